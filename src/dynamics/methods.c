@@ -26,13 +26,9 @@ const char *tribo_method_name(int method)
 
 int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!drv || !method) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
-    }
-    for (int i = 0; i < tribo_method_count(); i++) {
+    int status = tribo_system_check_given(sys, drv, "drv");
+    status = status ? status : tribo_system_check_given(sys, method, "method");
+    for (int i = 0; !status && i < tribo_method_count(); i++) {
         if (tribo_same_name(methods[i]->name, method)) {
             return tribo_driver_create_method(drv, sys, methods[i]);
         }
@@ -41,8 +37,10 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     for (int i = 0, used = 0; i < tribo_method_count(); i++) {
         used += snprintf(list + used, sizeof list - (size_t)used, "%s%s", i ? ", " : "", methods[i]->name);
     }
-    return tribo_error(sys->message, TRIBO_ERR_NAME,
-                       "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", method, list);
+    return status ? status
+                  : tribo_error(sys->message, TRIBO_ERR_NAME,
+                                "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", method,
+                                list);
 }
 
 /* ------------------------------------------------------------------------------------------------------ method "auto" */

@@ -56,20 +56,14 @@ int tribo_shooting_ready(tribo_driver *drv, const char *missing, const double **
     if (!drv || missing) {
         return drv ? tribo_error(drv->message, TRIBO_ERR_NULL, "%s is NULL", missing) : TRIBO_ERR_NULL;
     }
-    for (size_t i = 0; *c && i < 2 * tribo_system_ndof(drv->sys); i++) {
-        if (!isfinite((*c)[i])) {
-            return tribo_error(drv->message, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, (*c)[i]);
-        }
-    }
-    if (*c && drv->motion) {
+    int status = tribo_check_array(drv->message, FINITE, "c", *c, 2 * tribo_system_ndof(drv->sys));
+    if (!status && *c && drv->motion) {
         tribo_system_read_combination(drv->sys, *c, drv->motion);
         *c = drv->motion;
     }
-    const int unset = tribo_system_take_settings(drv->sys);
-    if (unset) {
-        return tribo_driver_pass(drv, unset);
-    }
-    return s && s->found && s->revision == tribo_system_revision(drv->sys)
+    status = status ? status : tribo_driver_pass(drv, tribo_system_take_settings(drv->sys));
+    return status ? status
+           : s && s->found && s->revision == tribo_system_revision(drv->sys)
                ? TRIBO_OK
                : tribo_error(drv->message, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
                              s && s->found ? "the system has changed since the periodic motion was found"

@@ -113,9 +113,6 @@ static int check_search(tribo_driver *drv, const char *what, double t, const dou
     if (status) {
         return status;
     }
-    if (!y) {
-        return tribo_error(drv->message, TRIBO_ERR_NULL, "y is NULL");
-    }
     status = tribo_system_check_state(drv->sys, t, y);
     status = status ? status : tribo_system_take_settings(drv->sys);
     return tribo_driver_pass(drv, status);

@@ -152,27 +152,21 @@ static int flutter_zero(struct onset *o, double stable, double unstable, double 
 int tribo_system_find_flutter(tribo_system *sys, int parameter, const signed char *given, const double *y, double from, double to,
                               double *critical, double *omega)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!critical) {
-        return tribo_error(sys->message, TRIBO_ERR_NULL, "critical is NULL");
-    }
-    if (parameter != TRIBO_FLUTTER_FRICTION && parameter != TRIBO_FLUTTER_SPEED) {
+    int status = tribo_system_check_given(sys, critical, "critical");
+    if (!status && parameter != TRIBO_FLUTTER_FRICTION && parameter != TRIBO_FLUTTER_SPEED) {
         return tribo_error(sys->message, TRIBO_ERR_RANGE, "parameter = %d is no TRIBO_FLUTTER_...", parameter);
     }
-    const int finite = tribo_check_numbers(sys->message, 2, (const char *const[]){"from", "to"}, (const double[]){from, to});
-    if (finite) {
-        return finite;
-    }
-    if (from < 0.0 || to < 0.0) {
-        return tribo_error(sys->message, TRIBO_ERR_NEGATIVE, "%s = %g is negative", from < 0.0 ? "from" : "to",
-                           from < 0.0 ? from : to);
+    static const char *const names[] = {"from", "to"};
+    status = status ? status : tribo_check_numbers(sys->message, 2, names, (const double[]){from, to});
+    status = status ? status : tribo_check_number(sys->message, NOT_NEGATIVE, from, "from = %g", from);
+    status = status ? status : tribo_check_number(sys->message, NOT_NEGATIVE, to, "to = %g", to);
+    if (status) {
+        return status;
     }
     struct equilibrium e;
     struct onset o = {.e = &e, .parameter = parameter};
     double stable = from, unstable = HUGE_VAL, found = HUGE_VAL;
-    int status = tribo_equilibrium_create(&e, sys, given, y);
+    status = tribo_equilibrium_create(&e, sys, given, y);
     for (int k = 0; !status && unstable == HUGE_VAL && k <= FACTORS; k++) {
         status = flutter_try(&o, from + (to - from) * (k / (double)FACTORS), &stable, &unstable);
     }

@@ -38,34 +38,6 @@ static void condensed_free(struct condensed *s)
     free(s->shared);
 }
 
-/* Returns 1 if degree of freedom d has no mass: its row of M is empty or 0. */
-static int is_massless(const tribo_model *m, size_t d)
-{
-    int is = 1;
-    for (size_t e = m->mass.first[d]; e < m->mass.first[d + 1]; e++) {
-        is &= m->mass.val[e] == 0.0;
-    }
-    return is;
-}
-
-/* Sets place, with and without; reserves memory. Returns 0 if out of memory. */
-static int condense_number(const tribo_model *m, struct condensed *s)
-{
-    const size_t n = m->ndof, c = m->ncontact;
-    s->x = (struct expansion){.dofs = n, .place = malloc((n + c) * sizeof *s->x.place), .terms = malloc(n * sizeof *s->x.terms)};
-    if (!ALLOCATE(ARRAY(s->row, n), ARRAY(s->sum, n), ARRAY(s->size, n), ARRAY(s->own, c), ARRAY(s->column, n)) || !s->x.place ||
-        !s->x.terms) {
-        return 0;
-    }
-    for (size_t d = 0; d < n; d++) {
-        s->with += !is_massless(m, d);
-    }
-    for (size_t d = 0, q = 0; d < n; d++) {
-        s->x.place[d] = is_massless(m, d) ? s->with + s->without++ : q++;
-    }
-    return 1;
-}
-
 static int check_damping(const tribo_model *m, const struct condensed *s)
 {
     for (size_t i = 0; i < m->damping.rows; i++) {
@@ -227,9 +199,21 @@ static int replace_matrices(tribo_model *m, struct condensed *s)
 int tribo_model_condense(tribo_model *m, tribo_system **sys)
 {
     struct condensed s = {0};
-    const size_t given = m->ndof;
+    const size_t given = m->ndof, c = m->ncontact, *mass = m->mass.first;
     size_t where = 0;
-    int status = condense_number(m, &s) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    s.x =
+        (struct expansion){.dofs = given, .place = malloc((given + c) * sizeof(size_t)), .terms = malloc(given * sizeof(double))};
+    int status =
+        ALLOCATE(ARRAY(s.row, given), ARRAY(s.sum, given), ARRAY(s.size, given), ARRAY(s.own, c), ARRAY(s.column, given)) &&
+                s.x.place && s.x.terms
+            ? TRIBO_OK
+            : TRIBO_ERR_MEMORY;
+    for (size_t d = 0; d < given; d++) {
+        s.with += mass[d] < mass[d + 1];
+    }
+    for (size_t d = 0, q = 0; !status && d < given; d++) {
+        s.x.place[d] = mass[d] < mass[d + 1] ? q++ : s.with + s.without++;
+    }
     for (size_t i = 0; m->compliance && i < m->ncontact; i++) {
         s.x.sliders += m->compliance[i] > 0.0;
     }

@@ -152,14 +152,12 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
         status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->work.v, sys->work.a, feq, f));
     }
     for (int k = 0; !status && k < 2; k++) {
-        if (k ? feq : f) {
-            equations_put_normals(sys, k ? feq : f);
-        }
-    }
-    for (size_t k = 0; !status && k < 2 * sys->compliance.count; k++) { /* of compliant contacts, the forces in y */
-        double *to = k % 2 ? feq : f;
+        double *to = k ? feq : f;
         if (to) {
-            to[sys->compliance.contact[k / 2]] = y[2 * sys->ndof + k / 2];
+            equations_put_normals(sys, to);
+        }
+        for (size_t e = 0; to && e < sys->compliance.count; e++) { /* of compliant contacts, the forces in y */
+            to[sys->compliance.contact[e]] = y[2 * sys->ndof + e];
         }
     }
     if (!status && v) {

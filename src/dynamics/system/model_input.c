@@ -113,8 +113,12 @@ static int set_dense(tribo_model *model, enum which which, int diagonal, const d
     if (status) {
         return status;
     }
+    struct triplets t = {0};
+    for (size_t i = 0; diagonal && i < in.rows; i++) {
+        tribo_triplets_put(&t, i, i, entries[i]);
+    }
     return model_take(&in, &a,
-                      diagonal ? tribo_matrix_diagonal(&a, in.rows, entries)
+                      diagonal ? tribo_triplets_finish(&t, in.rows, in.rows, &a)
                                : tribo_matrix_from_dense(&a, in.rows, model->ndof, entries));
 }
 
