@@ -283,14 +283,9 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
     }
     if (sys->compliance.count) {
         tribo_matrix_add_columns(&sys->compliance.pull, part, p->columns, p->spring, p->next);
-        if (sys->normals.count) {
-            tribo_matrix_add_columns(&sys->compliance.g, 1.0, p->columns, p->force, v);
-        }
-        memcpy(p->spring, v, each * sizeof *v);
-        tribo_compliance_solve(sys, m->state.slip, p->columns, p->spring);
+        tribo_compliance_rates(sys, m->state.slip, sys->normals.count ? p->force : NULL, p->columns, v, p->spring);
         for (size_t i = 0; i < each; i++) {
-            const int slides = sys->normals.count && tribo_force_is_state(m, i / p->columns) && m->state.slip[i / p->columns];
-            p->spring[i] = slides ? part * p->force[i] : -part * p->spring[i];
+            p->spring[i] *= part;
         }
     }
     if (m->limits.falls) {

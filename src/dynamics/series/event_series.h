@@ -30,10 +30,9 @@ struct line {
     double *square;    /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
 
     /* with a spring before the slider: pair_series.c */
-    size_t lag;    /* 1: the limit begins at 0 */
-    int fades;     /* 1: the limit ends at 0, and is so small that u may stay */
-    double *a, *w; /* u' = a across; the part of v across u */
-    double *rise;  /* rate of the limit */
+    size_t lag; /* 1: the limit begins at 0 */
+    int fades;  /* 1: the limit ends at 0, and is so small that u may stay */
+    double *a;  /* u' = a r, r the normal of u */
 };
 
 struct lines {
@@ -188,8 +187,8 @@ static inline double tribo_line_across(const struct line *l, size_t d, size_t j)
     return l->t[d] * l->un[j] - l->n[d] * l->ut[j];
 }
 
-/* Sets e->force of contact l, of order k, from coefficients of g of the orders from <= j < to. */
-void tribo_line_force(const struct event *e, const struct line *l, size_t k, size_t from, size_t to);
+/* f [2] = the force of contact l, of order k, from coefficients of g of the orders from <= j < to. */
+void tribo_line_force(const struct line *l, size_t k, size_t from, size_t to, double *f);
 
 /* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
 double tribo_planar_series_first_stop(const struct stick_slip *m);

@@ -2,11 +2,10 @@
 /* Taylor series of a contact in a plane with a spring of compliance c before its slider. While the slider moves along u, |u| = 1,
  * the force f is -L u, L its limit, and
  *     v + c f' = sigma u,   sigma > 0 the speed of the slider.
- * L and sigma are g and speed of struct line, v is xn and xt. With w the part of v across u,
- *     u' = A across,   c L A = w,   sigma = v'u - c L',   f' = -L' u - w across/c.
- * lag = 0: w of order k gives A of order k.
+ * L and sigma are g and speed of struct line, v is xn and xt; u' = A across. The part of order k along t gives u of order k + 1,
+ * that along n sigma of order k.
  * lag = 1, where L(0) = 0 (touch-down), or the time c L(0)/|v| in which f turns is so short that f follows v: n is along v, the
- * term c L(0) A is left out, and w of order k gives A of order k - 1. Steps of lag = 0 would be as short as that time. */
+ * term c L(0) A is left out, and order k gives u of order k. Steps of lag = 0 would be as short as that time. */
 #include "event_series.h"
 #include "common/real.h"
 
@@ -51,38 +50,28 @@ int tribo_pair_series_begin(struct event *e)
     return status;
 }
 
-/* Sets u of order k + 1 from A up to order k. */
-static void turn_pair(struct line *l, size_t k)
-{
-    l->un[k + 1] = -tribo_product_of(l->ut, l->a, k, 0, k + 1) / (double)(k + 1);
-    l->ut[k + 1] = tribo_product_of(l->un, l->a, k, 0, k + 1) / (double)(k + 1);
-}
-
-/* w of order k. */
-static double across(const struct line *l, size_t k)
-{
-    return tribo_product_of(l->un, l->xt, k, 0, k + 1) - tribo_product_of(l->ut, l->xn, k, 0, k + 1);
-}
-
-/* Finds coefficients of order k of pair l, compliance c, and those of u of order k + 1, or k if lag = 1. */
+/* Finds u of order k + 1, or k if lag = 1, and the speed of order k of pair l, compliance c, by the equation of order k; A. */
 static void expand(struct line *l, double c, size_t k)
 {
+    const size_t at = l->lag ? k : k + 1, from = l->lag;
+    const double times = c * (double)(k + 1);
     if (k == 0) {
         l->un[0] = 1.0;
         l->ut[0] = 0.0;
-    } else if (l->lag) { /* w_k = w without A_(k - 1), less vn_0 A_(k - 1)/k */
-        l->a[k - 1] = 0.0;
-        turn_pair(l, k - 1);
-        const double known = k > 1 ? tribo_product_of(l->g, l->a, k, 2, k + 1) : 0.0;
-        l->a[k - 1] = (across(l, k) - c * known) / (c * l->g[1] + l->xn[0] / (double)k);
-        turn_pair(l, k - 1);
     }
-    l->w[k] = l->fades ? 0.0 : across(l, k);
-    l->speed[k] = tribo_product_of(l->un, l->xn, k, 0, k + 1) + tribo_product_of(l->ut, l->xt, k, 0, k + 1) - c * l->rise[k];
-    if (!l->lag) {
-        l->a[k] = (l->w[k] / c - tribo_product_of(l->g, l->a, k, 1, k + 1)) / l->g[0];
-        turn_pair(l, k);
+    if (at > 0) {
+        l->un[at] = -0.5 * (tribo_product_of(l->un, l->un, at, 1, at) + tribo_product_of(l->ut, l->ut, at, 1, at));
+        l->ut[at] = 0.0;
+        const double turned = times * tribo_product_of(l->g, l->ut, k + 1, from, k + 2);
+        const double rest = l->xt[k] - tribo_product_of(l->speed, l->ut, k, 0, k) - turned;
+        l->ut[at] = l->fades ? 0.0 : rest / (times * l->g[from] + (l->lag ? l->speed[0] : 0.0));
+        l->a[at - 1] = 0.0;
+        for (size_t j = 1; j <= at; j++) {
+            l->a[at - 1] += (double)j * (l->un[at - j] * l->ut[j] - l->ut[at - j] * l->un[j]);
+        }
     }
+    const double turned = times * tribo_product_of(l->g, l->un, k + 1, from, k + 2);
+    l->speed[k] = l->xn[k] - tribo_product_of(l->speed, l->un, k, 0, k) - turned;
 }
 
 void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, double *slide)
@@ -92,31 +81,33 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
     for (struct line *l = e->lines.line; l < e->lines.line + e->lines.count; l++) {
         const struct follower *f = tribo_normals_follower(sys, l->at);
         const struct normal *n = f ? &sys->normals.normal[f->normal] : NULL;
-        const double c = tribo_spring_of(&e->events.stick_slip, l->at), *x = v + l->at;
+        const double *x = v + l->at;
         const int still = f && m->state.rests[f->normal] && m->state.limit[l->at] == 0.0; /* regardless of rounding */
-        l->g[k] = k == 0 ? m->state.limit[l->at] : k < e->terms && !(still && k == 1) ? e->limit[k * sys->ncontact + l->at] : 0.0;
-        l->rise[k] = n && !(still && k == 0)
-                         ? f->mu * n->stiffness * tribo_matrix_row_dot(&sys->direction, n->row, e->u + k * sys->ndof)
-                         : 0.0;
-        if (m->state.slip[l->at] == TRIBO_SLIP_PLANE) {
-            if (k == 0) {
-                l->fades = l->g[0] * e->fastest < -FADES * m->state.limit_rate[l->at];
-                l->lag = !l->fades && tribo_follows_velocity(m, l->at, x);
-                const double *along = l->lag ? x : e->force + l->at, side = l->lag ? 1.0 : -1.0, size = hypot(along[0], along[1]);
-                tribo_line_set_direction(l, side * along[0] / size, side * along[1] / size);
-            }
-            l->xn[k] = l->n[0] * x[0] + l->n[1] * x[1];
-            l->xt[k] = l->n[0] * x[1] - l->n[1] * x[0];
-            expand(l, c, k);
-            if (l->lag && k > 0) { /* u_k is known now */
-                tribo_line_force(e, l, k, 0, k + 1);
-                l->asymptotic = !(l->g[1] > 0.0);
-            }
-            const double along = tribo_product_of(l->w, l->ut, k, 0, k + 1) / c - tribo_product_of(l->rise, l->un, k, 0, k + 1);
-            const double side = -tribo_product_of(l->rise, l->ut, k, 0, k + 1) - tribo_product_of(l->w, l->un, k, 0, k + 1) / c;
-            slide[l->at] = l->n[0] * along - l->n[1] * side;
-            slide[l->at + 1] = l->n[1] * along + l->n[0] * side;
+        l->g[0] = m->state.limit[l->at];
+        l->g[k + 1] =
+            still && k == 0 ? 0.0
+            : n ? f->mu * n->stiffness / (double)(k + 1) * tribo_matrix_row_dot(&sys->direction, n->row, e->u + k * sys->ndof)
+            : k + 1 < e->terms ? e->limit[(k + 1) * sys->ncontact + l->at]
+                               : 0.0;
+        if (m->state.slip[l->at] != TRIBO_SLIP_PLANE) {
+            continue;
         }
+        if (k == 0) {
+            l->fades = l->g[0] * e->fastest < -FADES * m->state.limit_rate[l->at];
+            l->lag = !l->fades && tribo_follows_velocity(m, l->at, x);
+            const double *along = l->lag ? x : e->force + l->at, side = l->lag ? 1.0 : -1.0, size = hypot(along[0], along[1]);
+            tribo_line_set_direction(l, side * along[0] / size, side * along[1] / size);
+        }
+        l->xn[k] = l->n[0] * x[0] + l->n[1] * x[1];
+        l->xt[k] = l->n[0] * x[1] - l->n[1] * x[0];
+        expand(l, tribo_spring_of(m, l->at), k);
+        if (l->lag && k > 0) { /* u_k is known by this order */
+            tribo_line_force(l, k, 0, k + 1, e->force + k * sys->ncontact + l->at);
+            l->asymptotic = !(l->g[1] > 0.0);
+        }
+        tribo_line_force(l, k + 1, l->lag, k + 2, slide + l->at);
+        slide[l->at] *= (double)(k + 1);
+        slide[l->at + 1] *= (double)(k + 1);
     }
 }
 
@@ -227,15 +218,14 @@ void tribo_pair_series_turn(const struct event *e, size_t k, const struct turns 
                 tribo_add(z, power * tribo_line_across(l, d, j), dv, columns);
             }
             tribo_add(z, -power * c * (l->lag && j == e->order ? 0.0 : l->a[j]), tribo_turn_of(e, p, p->g, k - j, s), columns);
-            tribo_add(z, l->lag && j == 0 ? 0.0 : -power * (l->speed[j] + c * l->rise[j]), tribo_turn_of(e, p, p->z, k - j, s),
-                      columns);
+            tribo_add(z, l->lag && j == 0 ? 0.0 : -power * (l->speed[j] + c * (double)(j + 1) * l->g[j + 1]),
+                      tribo_turn_of(e, p, p->z, k - j, s), columns);
             if (j > l->lag) {
                 const double *before = tribo_turn_of(e, p, p->z, k + 1 - j, s);
                 tribo_add(z, -power / p->tau * c * l->g[j] * (double)(k + 1 - j), before, columns);
             }
         }
-        const double by =
-            l->lag ? c * l->g[1] * (double)k + l->speed[0] + c * l->rise[0] : c * l->g[0] * (double)(k + 1) / p->tau;
+        const double times = c * (double)(k + 1), by = l->lag ? times * l->g[1] + l->speed[0] : times * l->g[0] / p->tau;
         for (size_t i = 0; i < columns; i++) {
             z[i] /= by;
         }

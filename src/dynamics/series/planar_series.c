@@ -41,7 +41,7 @@
 /* --------------------------------------------------------------------------------------------------- contacts in planes */
 
 /* Arrays of coefficients of a line. */
-#define SERIES 11
+#define SERIES 9
 
 int tribo_lines_reserve(struct event *e, size_t begins)
 {
@@ -61,8 +61,7 @@ int tribo_lines_reserve(struct event *e, size_t begins)
                            plural(count));
     }
     for (struct line *l = s->line; l < s->line + count; l++) {
-        double **const series[SERIES - 1] = {&l->xn, &l->xt, &l->un, &l->ut,   &l->speed,
-                                             &l->g,  &l->a,  &l->w,  &l->rise, &l->square};
+        double **const series[SERIES - 1] = {&l->xn, &l->xt, &l->un, &l->ut, &l->speed, &l->g, &l->a, &l->square};
         for (size_t k = 0; k < SERIES - 1; k++, x += terms) {
             *series[k] = x;
         }
@@ -78,11 +77,11 @@ void tribo_line_set_direction(struct line *l, double x, double y)
     l->t[0] = -y;
 }
 
-void tribo_line_force(const struct event *e, const struct line *l, size_t k, size_t from, size_t to)
+void tribo_line_force(const struct line *l, size_t k, size_t from, size_t to, double *f)
 {
     const double along = tribo_product_of(l->g, l->un, k, from, to), across = tribo_product_of(l->g, l->ut, k, from, to);
     for (size_t d = 0; d < 2; d++) {
-        e->force[k * e->sys->ncontact + l->at + d] = -l->weight[d] * (l->n[d] * along + l->t[d] * across);
+        f[d] = -l->weight[d] * (l->n[d] * along + l->t[d] * across);
     }
 }
 
@@ -246,8 +245,9 @@ int tribo_planar_series_forces(struct event *e, size_t k, double *v)
             l->speed[j] = l->xn[j] - tribo_product_of(l->speed, l->un, j, 0, j);
         }
         const size_t terms = tribo_event_limit_terms(e), to = k < terms ? k + 1 : terms;
-        tribo_line_force(e, l, k, lead, to);
-        memcpy(e->room.given + p->at, e->force + k * e->sys->ncontact + p->at, 2 * sizeof *e->force);
+        double *force = e->force + k * e->sys->ncontact + p->at;
+        tribo_line_force(l, k, lead, to, force);
+        memcpy(e->room.given + p->at, force, 2 * sizeof *force);
     }
     return TRIBO_OK;
 }
