@@ -133,11 +133,6 @@ static int sparse_factor_create(struct sparse_factor **factor, const struct matr
     return TRIBO_OK;
 }
 
-static size_t sparse_factor_entries(const struct sparse_factor *f)
-{
-    return f->l->is_super ? f->l->xsize : f->l->nzmax;
-}
-
 static int sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
 {
     return sparse_factor_apply(f, CHOLMOD_A, count, x);
@@ -198,8 +193,7 @@ static int sparse_inertia(const struct sparse_factor *like, const struct matrix 
 }
 
 static const struct sparse_solver cholmod = {
-    sparse_factor_create, sparse_factor_destroy,    sparse_factor_entries,
-    sparse_factor_solve,  sparse_factor_half_solve, sparse_inertia,
+    sparse_factor_create, sparse_factor_destroy, sparse_factor_solve, sparse_factor_half_solve, sparse_inertia,
 };
 
 const struct sparse_solver *const tribo_cholmod = &cholmod;

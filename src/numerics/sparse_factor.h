@@ -23,7 +23,6 @@ struct sparse_solver {
     int (*create)(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where);
 
     void (*destroy)(struct sparse_factor *factor); /* takes NULL */
-    size_t (*entries)(const struct sparse_factor *factor);
 
     /* x [count][n] = A^-1 x of count vectors. Returns 1, or 0 if out of memory, which cannot happen for count = 1. */
     int (*solve)(struct sparse_factor *factor, size_t count, double *x);

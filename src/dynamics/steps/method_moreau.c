@@ -12,7 +12,7 @@
 #include "common/layout.h"
 #include "common/real.h"
 
-/* Data of steps of length h: matrix S = M + h/2 C + h^2/4 K, S^-1 J', and contacts with the operator J S^-1 J'.
+/* Data of steps of length h: matrix S = M + h/2 C + h^2/4 K, and contacts with the operator J S^-1 J'.
  *
  * A compliant contact has forces f0 and f1 at the ends of the step; (f0 + f1)/2 acts during the step. The contact slides by
  *     h J (u0 + u1)/2 + G (f1 - f0) - displacement of its base,   |f1| <= limit.
@@ -25,8 +25,7 @@ struct moreau {
     struct step_form common;
     double h; /* prepared step length; 0: none */
     struct step_matrix matrix;
-    int whole;               /* 1: response and contacts are ready; made at first need where the matrix holds bodies */
-    double *response;        /* [ncontact][ndof] S^-1 J'; NULL: each step solves with S twice */
+    int whole;               /* 1: contacts are ready; made at first need where the matrix holds bodies */
     size_t told;             /* TRIBO_COUNT_SETTINGS of the system's contacts as contacts took them; SIZE_MAX: never */
     double *limit;           /* [ncontact] limits in a step; limit/2 for compliant contacts */
     double *spring, *give;   /* [ncontact] forces f0 of compliant contacts; workspace, as G f0 */
@@ -45,7 +44,6 @@ static void moreau_destroy(tribo_driver *drv)
         free(m->common.memory);
         free(m->limit);
         tribo_step_matrix_free(&m->matrix);
-        free(m->response);
         free(m);
     }
 }
@@ -87,13 +85,10 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_error(sys->message, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* Computes S^-1 J', and contacts with the operator J S^-1 J'. Returns a status. */
+/* Makes contacts with the operator J S^-1 J'. Returns a status. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
-    /* S^-1 J' is kept up to 1/5 of the entries of a sparse factor: a step then solves with S once instead of twice. */
-    const int keeps =
-        !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_cholmod->entries(m->matrix.sparse.sparse) / 5;
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = sys->settings.changes;
@@ -105,11 +100,9 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     } else {
         tribo_create(&m->contacts, c);
     }
-    free(m->response);
-    m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
-    const int done = r && own && m->contacts && (m->response || !keeps) &&
-                     tribo_delassus_by_columns(&sys->direction, tribo_step_matrix_solve, &m->matrix, m->response, r, own);
+    const int done =
+        r && own && m->contacts && tribo_delassus_by_columns(&sys->direction, tribo_step_matrix_solve, &m->matrix, r, own);
     if (done && !m->matrix.pivot) {
         tribo_even_out(c, r);
     }
@@ -122,25 +115,6 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     free(own);
     m->whole = !status;
     return status;
-}
-
-/* u += h S^-1 J' f. */
-static void push(struct moreau *m, const tribo_system *sys, double h, const double *f, double *u)
-{
-    const size_t n = sys->ndof;
-    const struct matrix *j = &sys->direction;
-    if (m->response) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            tribo_add(u, h * f[i], m->response + i * n, n);
-        }
-        return;
-    }
-    memset(m->common.spare, 0, n * sizeof *m->common.spare);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        tribo_matrix_add_row(j, i, h * f[i], m->common.spare);
-    }
-    tribo_step_matrix_solve(&m->matrix, 1, m->common.spare);
-    tribo_add(u, 1.0, m->common.spare, n);
 }
 
 /* Prepares steps of length h, if that is not done. Returns a status. */
@@ -244,7 +218,12 @@ static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, c
     }
     status = tribo_step_form_force(s, sys, m->contacts, h);
     if (!status) {
-        push(m, sys, h, s->f, s->u);
+        memset(s->spare, 0, sys->ndof * sizeof *s->spare); /* h S^-1 J' f */
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            tribo_matrix_add_row(&sys->direction, i, h * s->f[i], s->spare);
+        }
+        tribo_step_matrix_solve(&m->matrix, 1, s->spare);
+        tribo_add(s->u, 1.0, s->spare, sys->ndof);
         tribo_get_slip(m->contacts, s->mode);
     }
     return status;

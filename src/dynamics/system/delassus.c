@@ -12,27 +12,26 @@
 /* Rows of J solved at a time: one pass through the factor serves BATCH rows. */
 enum { BATCH = 16 };
 
-int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, const void *a, double *x, double *r, double *own)
+int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, const void *a, double *r, double *own)
 {
     const size_t n = j->cols, c = j->rows;
-    double *room = x ? NULL : malloc(BATCH * n * sizeof *room);
-    int done = x || room;
+    double *x = malloc(BATCH * n * sizeof *x);
+    int done = x != NULL;
     memset(r, 0, c * c * sizeof *r);
     for (size_t first = 0; done && first < c; first += BATCH) {
         const size_t count = c - first < BATCH ? c - first : BATCH;
-        double *some = x ? x + first * n : room;
         for (size_t i = 0; i < count; i++) {
-            tribo_matrix_get_row(j, first + i, some + i * n);
+            tribo_matrix_get_row(j, first + i, x + i * n);
         }
-        done = solve(a, count, some);
+        done = solve(a, count, x);
         for (size_t i = 0; done && i < count; i++) {
-            tribo_matrix_multiply_add(j, 1.0, some + i * n, r + (first + i) * c);
+            tribo_matrix_multiply_add(j, 1.0, x + i * n, r + (first + i) * c);
             for (size_t k = j->first[first + i]; k < j->first[first + i + 1]; k++) {
-                own[k] = some[i * n + j->col[k]];
+                own[k] = x[i * n + j->col[k]];
             }
         }
     }
-    free(room);
+    free(x);
     return done;
 }
 

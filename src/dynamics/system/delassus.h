@@ -8,9 +8,8 @@
 /* x [count][j->cols] = A^-1 x for count vectors. Returns 1, or 0 if out of memory. */
 typedef int delassus_solve(const void *a, size_t count, double *x);
 
-/* r [j->rows][j->rows] = J X with X = A^-1 J', a few rows of J at a time; own as in tribo_hidden. x [j->rows][j->cols] = X
- * transposed; NULL: X is not stored. Returns 1, or 0 if out of memory. */
-int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, const void *a, double *x, double *r, double *own);
+/* r [j->rows][j->rows] = J A^-1 J', a few rows of J at a time; own as in tribo_hidden. Returns 1, or 0 if out of memory. */
+int tribo_delassus_by_columns(const struct matrix *j, delassus_solve *solve, const void *a, double *r, double *own);
 
 /* A heavy body behind a light body, hidden by the rounding of R. */
 struct hidden {

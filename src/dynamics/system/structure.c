@@ -73,7 +73,7 @@ static int set_dense_operator(const tribo_model *m, tribo_system *sys, const str
             }
         }
     } else if (done) {
-        done = tribo_delassus_by_columns(j, solve_masses, &sys->factor, NULL, r, own);
+        done = tribo_delassus_by_columns(j, solve_masses, &sys->factor, r, own);
         tribo_even_out(c, r);
     }
     const int hidden = done && !m->nmode ? tribo_hidden(j, &sys->mass, own, r, &where) : 0;
