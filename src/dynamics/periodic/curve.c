@@ -265,7 +265,8 @@ static int restore(struct track *c, const struct knot *k)
     return status || c->ask->motion == TRIBO_MOTION_CYCLE ? status : tribo_shooting_find_flow(c->s);
 }
 
-/* Shows the motion k, c->s->here, to the observer. Returns a status. */
+/* Shows the motion k, c->s->here, to the observer. Stability is not known where the force of an elastic contact only touches its
+ * limit, unless motions are unique. Returns a status. */
 static int show(struct track *c, const struct knot *k, int kind, size_t contact)
 {
     struct shooting *s = c->s;
@@ -275,6 +276,10 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
     c->owner->found = 1;
     c->owner->told = s;
     c->owner->revision = tribo_system_revision(drv->sys);
+    const int asks = k->outside >= 0 && !c->unique, touched = asks ? tribo_shooting_check_touches(s, "stability") : TRIBO_OK;
+    if (touched && touched != TRIBO_ERR_UNSUPPORTED) {
+        return touched;
+    }
     if (drv->motion) {
         tribo_system_write_state(s->map.sys, s->map.t, c->w->y, c->shown);
     } else {
@@ -289,7 +294,7 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
                                      .y = c->shown,
                                      .kind = kind,
                                      .contact = normal ? drv->sys->normals.normal[contact - drv->sys->ncontact].row : contact,
-                                     .stable = k->outside < 0 ? -1 : k->outside == 0};
+                                     .stable = k->outside < 0 || touched ? -1 : k->outside == 0};
     c->points++;
     s->extra.count = c->base.count;
     const int answer = c->seen ? c->seen(&point, c->data) : 0;

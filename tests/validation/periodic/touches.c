@@ -113,9 +113,37 @@ TEST(stays_within)
     }
 }
 
+static int see_stability(const tribo_curve_point *point, void *data)
+{
+    *(int *)data = point->stable;
+    return 0;
+}
+
+/* The stability of a point of a curve is known where the contact stays within its limit. */
+TEST(stability)
+{
+    for (int k = 0; k < 2; k++) {
+        const double limit = 1.5 * CONTACT * size(), firm = CONTACT / (1.0 + CONTACT), margin = k ? 0.2 : 0.0;
+        const double place = ((1.0 - margin) * limit - CONTACT * size()) / firm;
+        const tribo_curve curve = {
+            .size = sizeof curve, .parameter = TRIBO_PARAMETER_SWING, .most = 2.0, .step = 0.1, .points = 1};
+        double y[6], period = 2.0 * PI / OMEGA;
+        int stable = 7;
+        tribo_system *sys = system_create(FOLLOWS, limit);
+        tribo_driver *drv = NULL;
+        assert_ok(tribo_driver_create(&drv, sys, method[_i]));
+        start(FOLLOWS, 0.3, place, limit, y);
+        const int status = tribo_driver_follow_curve(drv, &curve, 0.3, &period, y, see_stability, &stable);
+        require(!status, "%s", tribo_driver_message(drv));
+        ck_assert_int_eq(stable, k ? 1 : -1);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
 int main(void)
 {
     const int all = KINDS * COUNT(method);
-    const struct test tests[] = {{touches, all}, {stays_within, all}};
+    const struct test tests[] = {{touches, all}, {stays_within, all}, {stability, COUNT(method)}};
     return run_suite("touches", tests, COUNT(tests));
 }
