@@ -2,8 +2,7 @@
 /* Derivatives of the periodic motion found last by parameters p. With the image of the start x after the span,
  *     d image = D dx + w dp,   dx/dp = (I - D)^-1 w,
  * w: perturbation at the end of the span by the sources of dp, from zero. The motion is then followed once more, with the
- * perturbations dx/dp at its start, which come back to dx/dp. Where w takes a following of its own, this finds the extremes and
- * the responses of phases to sources, which the second following takes over.
+ * perturbations dx/dp at its start, which come back to dx/dp.
  *
  * Perturbations by the frequency are at constant phase theta = (1 + e) t of the loads, where q'' += -2 e q'' - e AC q', as by a
  * source, and q' = (1 + e) dq/dtheta. A factor of all loads and bases needs no source: the motion is homogeneous in loads, bases
@@ -36,42 +35,29 @@ static void add_paths(struct sensitivity *d, const signed char *slip, const doub
     }
 }
 
-/* Sets x->by, for the phase that ends, of = NULL, or one of the steps of the span. Returns a status. */
-static int find_by(struct sensitivity *d, struct extreme *x, const struct derivative_step *of)
+/* Sets an extreme, and its derivatives, if it is at time s >= 0 of the phase that ends. Returns a status. */
+static int update_extreme(struct sensitivity *d, struct extreme *x, const struct signal *signal, double s, double value)
 {
     const struct events *e = d->map->events;
     const size_t n = d->map->sys->ndof;
-    struct derivative_step step = {
-        .tau = x->at, .slip = of ? of->slip : e->stick_slip.state.slip, .phase = of ? of->phase : NULL};
+    struct derivative_step step = {.tau = s, .slip = e->stick_slip.state.slip};
     const struct derivative one = {.events = d->map->events, .sys = d->map->sys, .steps = 1, .step = &step};
-    if (!of) {
-        memcpy(x->v, d->variation.v, d->n * d->columns * sizeof *x->v);
-        memcpy(d->now, d->from, (d->n + 1) * sizeof *d->now);
-        e->motion->state(e->own, x->at, d->from, d->now);
+    double at[4];
+    if (!(s >= 0.0)) {
+        return TRIBO_OK;
     }
-    const int status = x->at > 0.0 ? tribo_derivative_apply(&one, 0, d->columns, x->v, &d->by) : TRIBO_OK;
+    tribo_signal_at(signal, s, at);
+    x->value = value;
+    x->corner = (s == 0.0 || s == signal->tau) && fabs(at[1]) * d->map->period > CORNER * fabs(value);
+    memcpy(d->moved, d->variation.v, d->n * d->columns * sizeof *d->moved);
+    const int status = s > 0.0 ? tribo_derivative_apply(&one, 0, d->columns, d->moved, &d->by) : TRIBO_OK;
     memset(x->by, 0, d->columns * sizeof *x->by);
-    tribo_multiply_add(1, d->n, d->columns, 1.0, d->c, x->v, x->by);
-    for (size_t j = 0; !of && j < d->columns; j++) {
+    tribo_multiply_add(1, d->n, d->columns, 1.0, d->c, d->moved, x->by);
+    e->motion->state(e->own, s, d->from, d->now);
+    for (size_t j = 0; j < d->columns; j++) {
         x->by[j] += d->kind[j] == TRIBO_PARAMETER_FREQUENCY ? tribo_dot(d->c + n, d->now + n, n) : 0.0;
     }
-    free(step.response);
     return status;
-}
-
-/* Sets an extreme if it is at time s >= 0 of the phase that ends. Its derivatives are found when the span has ended, or in the
- * next following: most extremes of phases are none of the period. */
-static void update_extreme(struct sensitivity *d, struct extreme *x, const struct signal *signal, double s, double value)
-{
-    double at[4];
-    if (s >= 0.0) {
-        memcpy(x->v, d->variation.v, d->n * d->columns * sizeof *x->v);
-        tribo_signal_at(signal, s, at);
-        x->value = value;
-        x->corner = (s == 0.0 || s == signal->tau) && fabs(at[1]) * d->map->period > CORNER * fabs(value);
-        x->at = s;
-        x->step = d->steps.steps;
-    }
 }
 
 static int sensitivity_phase(struct company *company, double tau, double t, const double *y)
@@ -85,20 +71,16 @@ static int sensitivity_phase(struct company *company, double tau, double t, cons
     if (d->path) {
         add_paths(d, slip, d->variation.v);
     }
-    const int locates = d->c && !d->located;
+    const int locates = d->c && d->last;
     struct extremes found = {d->least.value, d->most.value, NAN, NAN};
     struct signal signal = {0};
     int status = locates ? e->motion->signal(e->own, d->c, tau, y, &signal) : TRIBO_OK;
     if (!status && locates && !tribo_signal_extremes(&signal, 0.0, &found)) {
         status = tribo_error(d->map->sys->message, TRIBO_ERR_STEP, "a phase of the period is too fast to be followed");
     }
-    update_extreme(d, &d->least, &signal, found.at_least, found.least);
-    update_extreme(d, &d->most, &signal, found.at_most, found.most);
+    status = status ? status : update_extreme(d, &d->least, &signal, found.at_least, found.least);
+    status = status ? status : update_extreme(d, &d->most, &signal, found.at_most, found.most);
     tribo_signal_free(&signal);
-    for (size_t k = 0; d->located && k < 2; k++) {
-        struct extreme *const x = k ? &d->most : &d->least;
-        status = status || x->step != d->steps.steps ? status : find_by(d, x, NULL);
-    }
     status = status ? status : tribo_variation_phase(&d->variation, tau, t, y);
     if (d->path) {
         tribo_system_find_ways(d->map->sys, d->columns, d->variation.v, d->force, d->way);
@@ -128,7 +110,6 @@ static int follow_perturbed(struct sensitivity *d, const double *v)
     const struct shooting *s = m->drv->shooting;
     tribo_variation_begin(&d->variation, m->events, v, d->columns, &d->steps);
     d->variation.by = &d->by;
-    d->variation.known = d->second ? NULL : &d->first; /* tribo_second_phase may change the phases of the method */
     memcpy(d->from, s->here->y, d->n * sizeof *d->from);
     d->from[d->n] = 0.0;
     int status = tribo_period_map_replay(m, s->here->y, m->span, &d->company);
@@ -160,9 +141,6 @@ static int find_start(struct sensitivity *d, struct shooting *s)
     } else {
         status = follow_perturbed(d, d->start);
         memcpy(d->end, d->variation.v, all * sizeof *d->end);
-        d->first = d->steps;
-        d->steps = (struct derivative){.events = NULL};
-        d->located = d->c != NULL;
     }
     tribo_energy_norm_of(&m->norm, d->columns, d->end, d->start);
     for (size_t i = 0; m->odd && i < all; i++) {
@@ -269,13 +247,6 @@ static int write_extremes(struct sensitivity *d, double *extremes)
     if (least->corner || most->corner) {
         return tribo_error(d->map->drv->message, TRIBO_ERR_UNSUPPORTED, "an extreme of the signal lies at an event, at a corner");
     }
-    for (int k = 0; !d->located && k < (least == most ? 1 : 2); k++) {
-        struct extreme *const x = k ? most : least;
-        const int status = tribo_driver_pass(d->map->drv, find_by(d, x, d->steps.step + x->step));
-        if (status) {
-            return status;
-        }
-    }
     for (size_t j = 0; j < d->columns; j++) {
         const int loads = by_loads(d, j);
         extremes[2 * j] = low * (loads ? least->value - least->by[j] : least->by[j]);
@@ -379,7 +350,7 @@ int tribo_sensitivity_find(struct sensitivity *d, tribo_driver *drv, const size_
     d->most.value = -HUGE_VAL;
     const size_t each = d->contacts * count, all = d->n * count;
     const int room = ALLOCATE(ARRAY(d->start, all), ARRAY(d->end, all + each), ARRAY(d->from, d->n + 1), ARRAY(d->now, d->n + 1),
-                              ARRAY(d->least.v, all), ARRAY(d->most.v, all), ARRAY(d->least.by, count), ARRAY(d->most.by, count),
+                              ARRAY(d->moved, all), ARRAY(d->least.by, count), ARRAY(d->most.by, count),
                               ARRAY(d->moved_by, 2 * count), ARRAY(d->rise, each), ARRAY(d->way, each), ARRAY(d->force, each),
                               ARRAY(d->path, each), ARRAY(d->energy, d->contacts), ARRAY(d->slip, d->contacts)) &&
                      tribo_variation_create(&d->variation, s->map.sys, count);
@@ -387,7 +358,6 @@ int tribo_sensitivity_find(struct sensitivity *d, tribo_driver *drv, const size_
         room ? differentiate(d, s, index, extremes, energy, y)
              : tribo_error(s->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for %zu derivative%s", count, plural(count));
     tribo_derivative_free(&d->steps);
-    tribo_derivative_free(&d->first);
     tribo_variation_free(&d->variation);
     free(d->start);
     return status && s->map.drv != drv ? tribo_error(drv->message, status, "%s", s->map.drv->message) : status;

@@ -8,11 +8,8 @@
 /* An extreme so far, and its derivatives. */
 struct extreme {
     double value;
-    int corner;  /* 1: at an event at which the signal has a corner */
-    double *by;  /* [columns] */
-    size_t step; /* its phase, a step of the span */
-    double at;   /* time after the start of the phase */
-    double *v;   /* [n][columns] perturbations at the start of the phase */
+    int corner; /* 1: at an event at which the signal has a corner */
+    double *by; /* [columns] */
 };
 
 struct second;
@@ -22,7 +19,7 @@ struct sensitivity {
     struct company company;
     struct period_map *map;
     struct variation variation;
-    struct derivative steps, first; /* of this span; of the following that found w */
+    struct derivative steps; /* of this span */
     struct parameters by;
     size_t columns, n, contacts;
     const int *kind;
@@ -31,9 +28,9 @@ struct sensitivity {
     struct second *second; /* derivatives of a multiplier, found in the last following; or NULL */
     int last;              /* 1: this is the last following */
     struct extreme least, most;
-    int located;             /* 1: the phases and times of both are known */
     double *from, *now;      /* [n + 1] state at the start of the phase; workspace */
     double *start, *end;     /* [n][columns] perturbations at the start; workspace */
+    double *moved;           /* [n][columns] perturbations at an extreme */
     double *rise, *moved_by; /* members of by */
     double *way;             /* [contacts][columns] J q + G f of perturbations at the end of the last phase */
     double *force;           /* [contacts][columns] workspace */

@@ -20,7 +20,6 @@ void tribo_derivative_free(struct derivative *d)
         if (d->step[k].phase) {
             d->events->motion->release(d->step[k].phase);
         }
-        free(d->step[k].response);
         free(d->step[k].slip);
         free(d->step[k].jump);
     }
@@ -70,13 +69,13 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
 {
     const size_t n = d->sys->ndof, all = tribo_system_energy(d->sys), each = d->sys->ncontact * columns;
     double *work = malloc((3 * each + columns) * sizeof *work), *force = work + 2 * each + columns;
-    const struct source source = {.force = force};
-    static const double unit[][2] = {{1.0, 0.0}, {0.0, 1.0}};
+    const double *const moves = p ? p->moves : NULL;
+    const struct source source = {.force = force, .inertia = moves, .damping = moves ? moves + columns : NULL};
     int status =
         work ? TRIBO_OK
              : tribo_error(d->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     for (size_t k = first; !status && k < d->steps; k++) {
-        struct derivative_step *const s = d->step + k;
+        const struct derivative_step *const s = d->step + k;
         if (s->jump) {
             memset(work, 0, columns * sizeof *work);
             tribo_multiply_add(1, all, columns, 1.0, s->jump, v, work);
@@ -93,12 +92,6 @@ int tribo_derivative_apply(const struct derivative *d, size_t first, size_t colu
             force[i] = pushes ? -s->slip[contact] * p->rise[i] : 0.0;
         }
         status = d->events->motion->transition(d->events->own, s->phase, s->tau, columns, v, p ? &source : NULL);
-        if (!status && p && p->moves && !s->response) {
-            double *x = s->response = calloc(2 * (all + d->sys->ncontact) + 1, sizeof *x);
-            const struct source units = {.force = x ? x + 2 * all : NULL, .inertia = unit[0], .damping = unit[1]};
-            status = x ? d->events->motion->transition(d->events->own, s->phase, s->tau, 2, x, &units) : no_room(d);
-        }
-        tribo_multiply_add(!status && p && p->moves ? all : 0, 2, columns, 1.0, s->response, p ? p->moves : NULL, v);
     }
     free(work);
     return status;
@@ -274,12 +267,6 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
         x->before = s->slip = malloc(x->sys->ncontact + x->sys->normals.count + 1);
         done = s->slip != NULL;
         s->phase = motion->keep ? motion->keep(x->to->events->own, tau) : NULL;
-        struct derivative_step *const known =
-            x->known && x->to->steps <= x->known->steps ? x->known->step + x->to->steps - 1 : NULL;
-        if (known && known->tau == tau) {
-            s->response = known->response;
-            known->response = NULL;
-        }
     }
     if (done) {
         memcpy(s->slip, m->state.slip, x->sys->ncontact);
@@ -560,7 +547,6 @@ void tribo_variation_begin(struct variation *x, struct events *e, const double *
     x->columns = columns;
     x->to = to;
     x->by = NULL;
-    x->known = NULL;
     x->applied = 0;
     x->status = TRIBO_OK;
     x->clock = 0.0;

@@ -28,8 +28,6 @@
 struct derivative_step {
     void *phase; /* of motion->keep; NULL: not kept */
     double tau;
-    double *response;  /* [n][2] of perturbations at the end of the phase to inertia = 1, and to damping = 1, of struct source;
-                          NULL: not known */
     signed char *slip; /* [ncontact + normals] slip in the phase, then 1 for pressed normals; NULL: a jump */
     double *jump;      /* row [n], column [n - ndof] */
     size_t contact;
@@ -56,7 +54,7 @@ struct derivative {
 void tribo_derivative_free(struct derivative *d);
 
 /* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with
- * p->moves, a phase without response must be that which ends. Returns a status, its message on the system's context. */
+ * p->moves, the phase must be that which ends. Returns a status, its message on the system's context. */
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p);
 
 /* Returns 1 if a contact is at rest in all phases. */
@@ -71,7 +69,6 @@ struct variation {
     size_t columns;              /* at most those of create */
     double *v;                   /* [n][columns] perturbations after the first `applied` steps of `to` */
     const struct parameters *by; /* parameters by which v are derivatives, set after begin, or NULL */
-    struct derivative *known;    /* of the same motion, with responses, which its steps lose; set after begin, or NULL */
     size_t applied;              /* all steps, if phases are not kept, and with parameters */
     int status;                  /* of a failure in an event, its message on the system's context */
 
