@@ -134,14 +134,8 @@ static int find_start(struct sensitivity *d, struct shooting *s)
 {
     struct period_map *m = d->map;
     const size_t all = d->n * d->columns;
-    int status;
-    if (m->events->motion->keep && !d->moves) {
-        status = tribo_driver_pass(m->drv, tribo_derivative_apply(&s->here->derivative, 0, d->columns, d->start, &d->by));
-        memcpy(d->end, d->start, all * sizeof *d->end);
-    } else {
-        status = follow_perturbed(d, d->start);
-        memcpy(d->end, d->variation.v, all * sizeof *d->end);
-    }
+    int status = follow_perturbed(d, d->start);
+    memcpy(d->end, d->variation.v, all * sizeof *d->end);
     tribo_energy_norm_of(&m->norm, d->columns, d->end, d->start);
     for (size_t i = 0; m->odd && i < all; i++) {
         d->start[i] = -d->start[i];

@@ -35,12 +35,9 @@
 /* A step is successful if the residual falls to this part. */
 #define PAYS 0.9
 
-/* LEFT: |ratio| below which a shorter step is good. MOST_TRIALS: number of shorter steps tried. */
+/* LEFT: |ratio| below which a shorter step is good. Number of halvings of a step, at most; where distances may increase. */
 #define LEFT 0.5
-#define MOST_TRIALS 3
-
-/* Halvings of a step where limits follow the motion. */
-#define MOST_HALVINGS 6
+enum { HALVED = 3, MOST_HALVED = 6 };
 
 /* DOUBLE_FROM, DOUBLE_TO: range of ratio near a double root. BEYOND: length of the step over the distance to the double root. */
 #define DOUBLE_FROM 0.15
@@ -346,27 +343,15 @@ static int newton(struct shooting *s, double *part)
     return status ? status : try_step(s, *part);
 }
 
-/* Tries shorter steps, part in (low, high), after one of length high. Returns a status. */
-static int shorten(struct shooting *s, double high)
+/* Halves a step of length part until it is good. Returns a status. */
+static int shorten(struct shooting *s, double part)
 {
-    double low = 0.0, at_low = 1.0, at_high = s->ratio;
-    int status = TRIBO_OK;
-    for (int k = 0; may_diverge(s) && !status && !pays(s) && k < MOST_HALVINGS; k++) {
-        high *= 0.5;
-        status = try_step(s, high);
-    }
-    if (may_diverge(s)) {
-        return status;
-    }
-    for (int k = 0; !status && k < MOST_TRIALS; k++) {
-        const double secant = low + (high - low) * at_low / (at_low - at_high), least = low > 0.0 ? sqrt(low * high) : 0.1 * high;
-        const double part = at_high < 0.0 ? lesser(greater(secant, least), 0.9 * high) : 0.5 * high;
+    const int diverges = may_diverge(s), most = diverges ? MOST_HALVED : HALVED;
+    int status = TRIBO_OK, good = 0;
+    for (int k = 0; !status && !good && k < most; k++) {
+        part *= 0.5;
         status = try_step(s, part);
-        if (status || pays(s) || fabs(s->ratio) < LEFT) {
-            return status;
-        }
-        *(s->ratio > 0.0 ? &low : &high) = part;
-        *(s->ratio > 0.0 ? &at_low : &at_high) = s->ratio;
+        good = pays(s) || (!diverges && fabs(s->ratio) < LEFT);
     }
     return status;
 }
