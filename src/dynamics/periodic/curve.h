@@ -19,6 +19,9 @@ void tribo_word_free(struct word *w);
 /* Returns 1 if the sequences are equal, wherever their periods begin. */
 int tribo_word_equal(const struct word *a, const struct word *b);
 
+/* Returns 1 if the phases of two motions from one time on have the same slip and states of normals, one after the other. */
+int tribo_word_same(const struct derivative *a, const struct derivative *b, size_t width);
+
 /* Returns the change of the sequence from `from` to `to`: TRIBO_POINT_STICK, _SLIDE, _GRAZE or _ORDER. *contact = the lowest
  * index i at which the sequences of slip or state i alone differ, i >= contacts: normal i - contacts; SIZE_MAX if the change is
  * TRIBO_POINT_ORDER: the sequences of all contacts and normals alone are equal. */
@@ -34,19 +37,6 @@ struct knot {
     int outside;     /* number of multipliers outside of the unit circle; -1: not known */
     struct word word;
 };
-
-/* Observer of a motion with the steps `like`: same = 1 as long as the slip in its phases is that of `like`. */
-struct comparison {
-    struct company company;
-    const struct derivative *like;
-    size_t next; /* step of like after that of the last phase */
-    int same;
-};
-
-struct comparison tribo_word_compare(const struct derivative *like);
-
-/* Returns 1 if the motion observed has all phases of `like`. */
-int tribo_word_same(const struct comparison *c);
 
 enum { TRIBO_KNOTS = 13 };
 

@@ -73,22 +73,21 @@ static int curve_border(struct shooting *s, struct point *p)
     struct track *c = s->curve;
     const size_t n = c->n, count = c->count, last = count - 1;
     const double unit = s->extra.unit[last], value = p->unknown[last] * unit;
-    double *column = p->border + last * n, *row = p->border + count * n + last * (n + count), *image = s->guess;
+    double *column = p->border + last * n, *row = p->border + count * n + last * (n + count);
+    struct point *const beside = &s->beside;
     int same = c->ask->parameter == TRIBO_PARAMETER_AMPLITUDE, status = same ? TRIBO_OK : tribo_period_map_matrix(&s->map, p);
+    status = status || !c->base.count ? status : c->base.border(s, p);
     memset(column, 0, n * sizeof *column);
     for (int side = value < c->ask->most ? 1 : -1, k = 0; !status && !same && k < 2; k++, side = -side) {
-        struct comparison seen = tribo_word_compare(&p->derivative);
         const double by = side * NEARBY * greater(fabs(value), fabs(c->ask->step));
         status = tribo_curve_set(c, value + by);
-        status = status ? status : tribo_period_map_image(&s->map, p->x, &seen.company, image);
-        same = tribo_word_same(&seen);
+        memcpy(beside->x, p->x, n * sizeof *p->x);
+        status = status ? status : tribo_period_map_follow(&s->map, beside);
+        same = !status && tribo_word_same(&p->derivative, &beside->derivative, c->width);
         for (size_t i = 0; (same || k == 0) && i < n; i++) {
-            column[i] = (image[i] - p->image[i]) / by * unit;
+            column[i] = (beside->image[i] - p->image[i]) / by * unit;
         }
         status = status ? status : tribo_curve_set(c, value);
-    }
-    if (c->base.count && !status) {
-        status = c->base.border(s, p);
     }
     p->value[last] = -c->ahead;
     for (size_t i = 0; i < n + count; i++) {

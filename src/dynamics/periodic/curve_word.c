@@ -98,38 +98,19 @@ int tribo_word_change(const struct word *from, const struct word *to, size_t con
 
 /* ------------------------------------------------------------------------------------------------------------- comparison */
 
-/* Returns the first step of a phase from k on. */
-static size_t phase_from(const struct derivative *d, size_t k)
+int tribo_word_same(const struct derivative *a, const struct derivative *b, size_t width)
 {
-    while (k < d->steps && !d->step[k].slip) {
-        k++;
+    int same = 1;
+    for (size_t k = 0, l = 0; same && k <= a->steps; k++) {
+        if (k < a->steps && !a->step[k].slip) {
+            continue; /* a jump */
+        }
+        while (l < b->steps && !b->step[l].slip) {
+            l++;
+        }
+        same =
+            k < a->steps && l < b->steps ? memcmp(a->step[k].slip, b->step[l].slip, width) == 0 : k == a->steps && l == b->steps;
+        l++;
     }
-    return k;
-}
-
-static int phase_compared(struct company *company, double tau, double t, const double *y)
-{
-    struct comparison *c = (struct comparison *)company;
-    const struct derivative *d = c->like;
-    const struct slip_state *state = &d->events->stick_slip.state;
-    const size_t k = c->next = phase_from(d, c->next), contacts = d->sys->ncontact;
-    (void)tau;
-    (void)t;
-    (void)y;
-    c->same &= k < d->steps && memcmp(d->step[k].slip, state->slip, contacts) == 0;
-    for (size_t i = 0; c->same && i < d->sys->normals.count; i++) {
-        c->same &= d->step[k].slip[contacts + i] == (signed char)state->pressed[i];
-    }
-    c->next++;
-    return TRIBO_OK;
-}
-
-struct comparison tribo_word_compare(const struct derivative *like)
-{
-    return (struct comparison){{phase_compared, NULL}, like, 0, 1};
-}
-
-int tribo_word_same(const struct comparison *c)
-{
-    return c->same && phase_from(c->like, c->next) == c->like->steps;
+    return same;
 }

@@ -193,14 +193,6 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     return status ? status : follow_state(m, p);
 }
 
-int tribo_period_map_image(struct period_map *m, const double *x, struct company *company, double *image)
-{
-    int status = enter(m, x);
-    status = status ? status : period_map_integrate(m, m->t, m->t + m->span, company);
-    find_image(m, m->odd, 1, m->y, image);
-    return status;
-}
-
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p)
 {
     memcpy(m->y, y, m->n * sizeof *y);

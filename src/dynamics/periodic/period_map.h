@@ -75,11 +75,6 @@ int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_later(struct period_map *m, const double *y, double later, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p);
 
-/* image [n] = image of x [n], by an integration with the observer `company`. x is first corrected as by follow: the contacts at
- * rest at the end of the last integration must be those at rest at the end of that from x. Returns a status, its message on the
- * driver. */
-int tribo_period_map_image(struct period_map *m, const double *x, struct company *company, double *image);
-
 /* apply: x [n] = D x, D = d image/d x at p. matrix: p->derivative.matrix [n][n] = D, unless it is set. Both return a
  * status, its message on the driver. */
 int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x);

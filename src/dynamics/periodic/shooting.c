@@ -681,10 +681,11 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     if (!s) {
         return NULL;
     }
-    struct point *const p = s->point, *const other = s->point + 1;
+    struct point *const p = s->point, *const other = s->point + 1, *const beside = &s->beside;
     if (!ALLOCATE(ARRAY(s->a, all * all), ARRAY(s->b, n * n), ARRAY(s->step, all), ARRAY(s->guess, n),
                   ARRAY(s->space, tribo_gmres_room(n, n)), ARRAY(p->y, n), ARRAY(p->x, n), ARRAY(p->end, n), ARRAY(p->image, n),
-                  ARRAY(other->y, n), ARRAY(other->x, n), ARRAY(other->end, n), ARRAY(other->image, n),
+                  ARRAY(other->y, n), ARRAY(other->x, n), ARRAY(other->end, n), ARRAY(other->image, n), ARRAY(beside->y, n),
+                  ARRAY(beside->x, n), ARRAY(beside->end, n), ARRAY(beside->image, n),
                   ARRAY(p->border, TRIBO_UNKNOWNS * (n + all)), ARRAY(other->border, TRIBO_UNKNOWNS * (n + all))) ||
         !tribo_period_map_create(&s->map, drv)) {
         tribo_shooting_free(s);
@@ -701,6 +702,7 @@ void tribo_shooting_free(struct shooting *s)
         for (size_t k = 0; k < 2; k++) {
             tribo_derivative_free(&s->point[k].derivative);
         }
+        tribo_derivative_free(&s->beside.derivative);
         tribo_period_map_free(&s->map);
         tribo_shooting_leave_twin(s);
         free(s->a);
