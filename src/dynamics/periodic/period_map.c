@@ -155,20 +155,8 @@ static void lower_springs(struct period_map *m)
     }
 }
 
-/* Turns the contacts at rest of a ring back as the state after a span. Returns a status, its message on the system's context. */
-static int turn_contacts(struct period_map *m, struct stick_slip *contacts)
-{
-    const size_t count = m->sys->ncontact, by = m->ring.step * (count / m->ring.sectors);
-    signed char *before = (signed char *)m->limit;
-    memcpy(before, contacts->state.slip, count);
-    for (size_t i = 0; i < count; i++) {
-        tribo_stick_slip_set(contacts, i, before[(i + by) % count]);
-    }
-    return tribo_stick_slip_find_holds(contacts, m->sys);
-}
-
-/* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration,
- * and for spring forces above limits. Returns a status. */
+/* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration
+ * (in a ring turned back as the state after a span), and for spring forces above limits. Returns a status. */
 static int enter(struct period_map *m, const double *x)
 {
     memcpy(m->x, x, m->n * sizeof *x);
@@ -176,10 +164,16 @@ static int enter(struct period_map *m, const double *x)
     int status = TRIBO_OK;
     if (m->moved) {
         struct stick_slip *contacts = &m->events->stick_slip;
+        const size_t count = m->sys->ncontact, by = m->ring.sectors ? m->ring.step * (count / m->ring.sectors) : 0;
+        signed char *before = (signed char *)m->limit;
+        memcpy(before, contacts->state.slip, count);
+        for (size_t i = 0; by && i < count; i++) {
+            tribo_stick_slip_set(contacts, i, before[(i + by) % count]);
+        }
+        status = by ? tribo_stick_slip_find_holds(contacts, m->sys) : TRIBO_OK;
         tribo_system_set_time(m->sys, m->t);
-        memset(contacts->state.base, 0, m->sys->ncontact * sizeof *contacts->state.base);
+        memset(contacts->state.base, 0, count * sizeof *contacts->state.base);
         tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->state.base);
-        status = m->ring.sectors ? turn_contacts(m, contacts) : TRIBO_OK;
         status = status ? status : tribo_stick_slip_hold(contacts, m->sys, contacts->state.base, m->y + m->sys->ndof);
         status = tribo_driver_pass(m->drv, status);
     }
