@@ -19,14 +19,7 @@ double tribo_length(int directions, const double *x)
         return fabs(x[0]);
     }
     const double most = greater(fabs(x[0]), fabs(x[1]));
-    if (most > TINY && most < 1.0 / TINY) {
-        return sqrt(x[0] * x[0] + x[1] * x[1]);
-    }
-    if (!(most > 0.0)) {
-        return 0.0;
-    }
-    const double u = x[0] / most, w = x[1] / most;
-    return most * sqrt(u * u + w * w);
+    return most > TINY && most < 1.0 / TINY ? sqrt(x[0] * x[0] + x[1] * x[1]) : hypot(x[0], x[1]);
 }
 
 /* Uses 1 - |x|^2 = (1 - |x|)(1 + |x|), without cancellation near the rim. */

@@ -30,19 +30,29 @@
 /* A distance longer than any within a set, in parts of limits. */
 #define BEYOND_ALL 4.0
 
+/* sum [2] = S x in the rows of the contact at i, which have the same columns, size [2] = sum_k |s_ik x_k|; with one direction both
+ * entries are alike. */
+static inline void contact_rows(const struct disc_qp *p, size_t i, const double *x, double *sum, double *size)
+{
+    const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i);
+    const size_t *col = p->s.pattern ? p->s.col + begin : NULL;
+    const double *row = p->s.val + begin, *beside = p->s.val + tribo_disc_row(p, i + p->wide[i] - 1);
+    sum[0] = sum[1] = size[0] = size[1] = 0.0;
+    for (size_t t = 0; t < terms; t++) {
+        const double to = x[col ? col[t] : t], term[2] = {row[t] * to, beside[t] * to};
+        sum[0] += term[0];
+        sum[1] += term[1];
+        size[0] += fabs(term[0]);
+        size[1] += fabs(term[1]);
+    }
+}
+
 void tribo_disc_add(const struct disc_qp *p, size_t i, const double *x, double *sum)
 {
-    const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i), other = i + p->wide[i] - 1;
-    const double *row = p->s.val + begin, *beside = p->s.val + tribo_disc_row(p, other);
-    double first = 0.0, second = 0.0;
-    for (size_t t = 0; t < terms; t++) {
-        const double to = x[p->s.pattern ? p->s.col[begin + t] : t];
-        first += row[t] * to;
-        second += beside[t] * to;
-    }
-    sum[0] += first;
-    if (other > i) {
-        sum[1] += second;
+    double part[2], size[2];
+    contact_rows(p, i, x, part, size);
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        sum[k] += part[k];
     }
 }
 
@@ -61,21 +71,13 @@ TRIBO_SIMD void tribo_disc_multiply(const struct disc_qp *p, const double *x, do
             size[k] += fabs(term);
         }
     }
-    for (size_t i = 0; p->s.pattern && i < n; i += p->wide[i]) { /* rows of one contact have the same columns */
-        const size_t other = i + p->wide[i] - 1, *col = p->s.col + p->s.first[i];
-        const double *row = p->s.val + p->s.first[i], *beside = p->s.val + p->s.first[other];
-        double sum[2] = {0.0, 0.0}, all[2] = {0.0, 0.0};
-        for (size_t e = 0; e < p->s.first[i + 1] - p->s.first[i]; e++) {
-            const double to = x[col[e]], term[2] = {row[e] * to, beside[e] * to};
-            sum[0] += term[0];
-            sum[1] += term[1];
-            all[0] += fabs(term[0]);
-            all[1] += fabs(term[1]);
+    for (size_t i = 0; p->s.pattern && i < n; i += p->wide[i]) {
+        double sum[2], all[2];
+        contact_rows(p, i, x, sum, all);
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            y[i + k] = sum[k];
+            size[i + k] = all[k];
         }
-        y[i] = sum[0];
-        y[other] = sum[other - i];
-        size[i] = all[0];
-        size[other] = all[other - i];
     }
 }
 
