@@ -206,9 +206,7 @@ int tribo_sparse_enter(struct box_qp *p, size_t i);
 void tribo_sparse_leave(struct box_qp *p, size_t i);
 double tribo_sparse_rebuild(struct box_qp *p, size_t *where);
 void tribo_sparse_solve(const struct box_qp *p, double *step);
-size_t tribo_sparse_row(const struct box_qp *p, size_t i, const size_t **col, const double **val);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
-void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
 /* Allocates the pattern of the factor of R = r (columns ascending, by place). *s = NULL if a dense factor is better: the sparse
  * one would have too many entries. Returns 1, or 0 if out of memory. */

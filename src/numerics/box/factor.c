@@ -16,6 +16,7 @@
 
 #include "common/real.h"
 #include "common/simd.h"
+#include "numerics/csr.h"
 #include "numerics/twofold.h"
 
 /* Largest numbers of a graded solve: its results stay below TWOFOLD_FAR. */
@@ -88,56 +89,28 @@ static inline struct twofold factor_minus(int graded, struct twofold x, struct t
     return graded ? twofold_minus(x, y) : (struct twofold){x.hi - y.hi, 0.0};
 }
 
-/* Returns what the first k columns of l leave of the scaled entry of contacts order[i] and order[j]. All entries come from one
- * triangle of R and are sums in one order, so that those of equal contacts are equal to the last digit. */
-static inline struct twofold entry_left(const struct box_qp *p, int graded, size_t i, size_t j, size_t k)
-{
-    const size_t a = p->order[i], b = p->order[j];
-    struct twofold x = scaled_entry(p, graded, a > b ? a : b, a > b ? b : a);
-    for (size_t m = 0; m < k; m++) {
-        x = factor_minus(graded, x, factor_times(graded, factor_entry(p, graded, i, m), factor_entry(p, graded, j, m)));
-    }
-    return x;
-}
-
-/* left = entry_left of order[i], order[i + 1], ... order[all - 1], SUMS at most, and order[k], with sums side by side. */
-static inline void entries_left(const struct box_qp *p, int graded, size_t i, size_t all, size_t k, struct twofold *left)
-{
-    const size_t size = p->group->size, count = all - i < SUMS ? all - i : SUMS;
-    const int together = !graded && count == SUMS;
-    double sum[SUMS];
-    for (size_t a = 0; a < count; a++) {
-        left[a] = entry_left(p, graded, i + a, k, together ? 0 : k);
-        sum[a] = left[a].hi;
-    }
-    for (size_t m = 0; together && m < k; m++) {
-        for (size_t a = 0; a < SUMS; a++) {
-            sum[a] -= p->l[(i + a) * size + m] * p->l[k * size + m];
-        }
-    }
-    for (size_t a = 0; a < count; a++) {
-        left[a].hi = sum[a];
-    }
-}
-
-/* Exchanges order[k] and order[best], with k columns of l and the pivots that wait on the diagonal. */
-static inline void exchange_contacts(const struct box_qp *p, int graded, size_t k, size_t best)
+/* Exchanges rows and columns k and best > k of the lower triangle of l [all][all]. */
+static inline void exchange_contacts(const struct box_qp *p, int graded, size_t k, size_t best, size_t all)
 {
     const size_t size = p->group->size, first = p->order[k];
     double *const array[] = {p->l, p->low.l};
-    for (int a = 0; a < 1 + graded && best != k; a++) {
-        tribo_exchange(array[a] + k * size, array[a] + best * size, k, 1);
-        tribo_exchange(array[a] + k * (size + 1), array[a] + best * (size + 1), 1, 1);
+    for (int a = 0; a < 1 + graded; a++) {
+        double *const l = array[a];
+        tribo_exchange(l + k * size, l + best * size, k, 1);
+        tribo_exchange(l + k * (size + 1), l + best * (size + 1), 1, 1);
+        for (size_t i = k + 1; i < all; i++) {
+            tribo_exchange(l + i * size + k, i < best ? l + best * size + i : l + i * size + best, i != best, 1);
+        }
     }
     p->order[k] = p->order[best];
     p->order[best] = first;
 }
 
-/* Cholesky factorization, column by column, with the largest pivot next; pivots wait on the diagonal. */
+/* Cholesky factorization with the largest pivot next: takes each column, once found, from the entries behind it. All entries come
+ * from one triangle of R and are sums in one order, so that those of equal contacts are equal to the last digit. */
 static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
 {
     const size_t size = p->group->size;
-    struct twofold left[SUMS];
     size_t all = 0, k = 0;
     double most = 0.0;
     p->work.factorizations++;
@@ -148,7 +121,9 @@ static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
     }
     const double zero = graded ? TRIBO_GRADED_ZERO : tribo_resolution(all);
     for (size_t i = 0; i < all; i++) {
-        set_factor(p, graded, i, i, entry_left(p, graded, i, i, 0));
+        for (size_t j = 0; j <= i; j++) {
+            set_factor(p, graded, i, j, scaled_entry(p, graded, p->order[i], p->order[j]));
+        }
     }
     for (; k < all; k++) {
         size_t best = k;
@@ -158,25 +133,27 @@ static inline double dense_rebuild(struct box_qp *p, int graded, size_t *where)
         if (p->l[best * (size + 1)] <= zero) {
             break;
         }
-        exchange_contacts(p, graded, k, best);
+        if (best > k) {
+            exchange_contacts(p, graded, k, best, all);
+        }
         const struct twofold pivot = factor_entry(p, graded, k, k);
         const struct twofold inverse = graded ? twofold_inverse_root(pivot) : (struct twofold){1.0 / sqrt(pivot.hi), 0.0};
         set_factor(p, graded, k, k, inverse);
         for (size_t i = k + 1; i < all; i++) {
-            const size_t lane = (i - k - 1) % SUMS;
-            if (lane == 0) {
-                entries_left(p, graded, i, all, k, left);
-            }
-            const struct twofold x = factor_times(graded, left[lane], inverse);
+            const struct twofold x = factor_times(graded, factor_entry(p, graded, i, k), inverse);
             set_factor(p, graded, i, k, x);
-            set_factor(p, graded, i, i, factor_minus(graded, factor_entry(p, graded, i, i), factor_times(graded, x, x)));
+            set_factor(p, graded, k, i, x); /* the column, side by side */
+            for (size_t j = k + 1; j <= i; j++) {
+                const struct twofold part = factor_times(graded, x, factor_entry(p, graded, k, j));
+                set_factor(p, graded, i, j, factor_minus(graded, factor_entry(p, graded, i, j), part));
+            }
         }
     }
     p->sets->rank = k;
     p->sets->dependents = all - k;
     for (size_t i = k; where && i < all; i++) {
         for (size_t j = k; j <= i; j++) {
-            const double x = i == j ? p->l[i * (size + 1)] : entry_left(p, graded, i, j, k).hi;
+            const double x = p->l[i * size + j];
             if (fabs(x) > fabs(most)) {
                 most = i == j ? x : -fabs(x);
                 *where = p->order[i];
@@ -389,7 +366,7 @@ void tribo_box_change(struct box_qp *p, size_t i, signed char to)
     }
 }
 
-double tribo_factor_rebuild(struct box_qp *p, size_t *where)
+TRIBO_SIMD double tribo_factor_rebuild(struct box_qp *p, size_t *where)
 {
     return p->group->sparse   ? tribo_sparse_rebuild(p, where)
            : p->group->graded ? dense_rebuild(p, 1, where)
@@ -441,12 +418,10 @@ TRIBO_SIMD double tribo_row_dot(const struct box_qp *p, size_t i, const double *
 
 size_t tribo_row_entries(const struct box_qp *p, size_t i, const size_t **col, const double **val)
 {
-    if (p->group->sparse) {
-        return tribo_sparse_row(p, i, col, val);
-    }
-    *col = NULL;
-    *val = p->r + i * p->group->size;
-    return p->group->size;
+    const struct csr *r = p->group->sparse ? tribo_sparse_rows(p->group->sparse) : NULL;
+    *col = r ? r->col + r->first[i] : NULL;
+    *val = r ? r->val + r->first[i] : p->r + i * p->group->size;
+    return r ? r->first[i + 1] - r->first[i] : p->group->size;
 }
 
 double tribo_row_others(const struct box_qp *p, size_t i, double *x)
@@ -462,14 +437,18 @@ double tribo_row_others(const struct box_qp *p, size_t i, double *x)
 void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
 {
     const struct group *g = p->group;
-    const double *row = p->r + d * g->size;
-    if (g->sparse) {
-        tribo_sparse_spread(p, d, -1.0, y);
+    const size_t *col;
+    const double *val;
+    const size_t entries = tribo_row_entries(p, d, &col, &val);
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        y[p->order[k]] = 0.0;
     }
-    for (size_t k = 0; k < p->sets->rank && !g->sparse; k++) {
-        const size_t i = p->order[k];
-        y[i] = -row[i];
-        p->row[i] = g->graded ? -p->low.r[d * g->size + i] : 0.0;
+    for (size_t e = 0; e < entries; e++) {
+        const size_t j = col ? col[e] : e;
+        if (p->at[j] == FREE) {
+            y[j] = -val[e];
+            p->row[j] = g->graded ? -p->low.r[d * g->size + j] : 0.0;
+        }
     }
     if (g->graded) {
         factor_solve(p, y);

@@ -220,14 +220,6 @@ static int find_pattern(struct sparse *s, size_t *work)
 
 /* ------------------------------------------------------------------------------------------------------- rows of R */
 
-size_t tribo_sparse_row(const struct box_qp *p, size_t i, const size_t **col, const double **val)
-{
-    const struct csr *r = &p->group->sparse->r;
-    *col = r->col + r->first[i];
-    *val = r->val + r->first[i];
-    return r->first[i + 1] - r->first[i];
-}
-
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size)
 {
     const struct csr *r = &p->group->sparse->r;
@@ -241,19 +233,6 @@ double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, doubl
     return sum;
 }
 
-void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y)
-{
-    const struct csr *r = &p->group->sparse->r;
-    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
-        y[p->order[k]] = 0.0;
-    }
-    for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
-        if (p->at[r->col[e]] == FREE) {
-            y[r->col[e]] = factor * r->val[e];
-        }
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------------- the factor */
 
 /* Runs of at least WIDE columns are eliminated together. */
@@ -265,19 +244,14 @@ TRIBO_SIMD static void subtract_run(const double *l, const size_t *slot, const d
                                     double *restrict x)
 {
     size_t a = 0;
-    for (; a + 4 <= width; a += 4) {
-        const size_t rest = n - a - 4; /* rows behind the four columns; columns begin with rows between them */
-        const double *p = l + slot[a] - (rest + 3), *q = l + slot[a + 1] - (rest + 2), *r = l + slot[a + 2] - (rest + 1),
-                     *s = l + slot[a + 3] - rest;
+    for (; a + 2 <= width; a += 2) {
+        const size_t rest = n - a - 2; /* rows behind both columns; the first one begins with the row between them */
+        const double *p = l + slot[a] - (rest + 1), *q = l + slot[a + 1] - rest;
         const double e = d[a] == 0.0 ? 0.0 : x[a];
         x[a + 1] -= e * p[0];
         const double f = d[a + 1] == 0.0 ? 0.0 : x[a + 1];
-        x[a + 2] -= e * p[1] + f * q[0];
-        const double g = d[a + 2] == 0.0 ? 0.0 : x[a + 2];
-        x[a + 3] -= e * p[2] + f * q[1] + g * r[0];
-        const double h = d[a + 3] == 0.0 ? 0.0 : x[a + 3];
         for (size_t i = 0; i < rest; i++) {
-            x[a + 4 + i] -= (e * p[3 + i] + f * q[2 + i]) + (g * r[1 + i] + h * s[i]);
+            x[a + 2 + i] -= e * p[1 + i] + f * q[i];
         }
     }
     for (; a < width; a++) {
@@ -459,21 +433,16 @@ static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
 static int sparse_depends(struct box_qp *p, size_t i)
 {
     const struct sparse *s = p->group->sparse;
-    const size_t row = s->r.first[i], end = s->r.first[i + 1];
-    double own = 0.0, pivot = 0.0, size = 0.0;
-    tribo_sparse_spread(p, i, 1.0, p->step);
-    tribo_sparse_solve(p, p->step);
-    for (size_t e = row; e < end; e++) {
+    double pivot = 0.0, size = 0.0;
+    tribo_null_vector(p, i, p->step);
+    for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
         const size_t j = s->r.col[e];
-        const double x = s->r.val[e];
-        if (j == i) {
-            own = x;
-        } else if (p->sparse.d[s->position[j]] != 0.0) {
-            pivot -= x * p->step[j];
-            size += fabs(x * p->step[j]);
+        if (j == i || p->sparse.d[s->position[j]] != 0.0) {
+            pivot += s->r.val[e] * p->step[j];
+            size += fabs(s->r.val[e] * p->step[j]);
         }
     }
-    return own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size);
+    return pivot <= 2.0 * TRIBO_SPARSE_ZERO * size;
 }
 
 int tribo_sparse_enter(struct box_qp *p, size_t i)
