@@ -178,18 +178,6 @@ static void eliminate_tie(struct elimination *e)
     }
 }
 
-/* Sets the entries of a tie of one row with one degree of freedom, as fill and eliminate_tie do. */
-static void invert_one(const struct elimination *e)
-{
-    struct tie *tie = e->tie;
-    const double entry = e->direction->val[e->direction->first[e->row[tie->order[0]]]];
-    tie->rank = entry != 0.0;
-    tie->entry[0] = entry;
-    if (tie->rank && tie->stride > 1) {
-        tie->entry[1] = 1.0 / entry;
-    }
-}
-
 /* Finds the ties, sets of rows and of degrees of freedom, which come behind all rows. Returns 1, or 0 if out of memory. */
 static int find_ties(struct elimination *e, struct constraints *c)
 {
@@ -253,12 +241,8 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
         e.tie->entry = entry;
         entry += e.tie->rows * e.tie->stride;
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
-        if (e.tie->rows == 1 && e.tie->touched == 1) {
-            invert_one(&e);
-        } else {
-            fill(&e);
-            eliminate_tie(&e);
-        }
+        fill(&e);
+        eliminate_tie(&e);
         c->rank += e.tie->rank;
     }
     size_t other = c->rank;
