@@ -48,9 +48,7 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
-    if (drv->shooting) {
-        tribo_shooting_free(drv->shooting);
-    }
+    tribo_shooting_free(drv->shooting);
     drv->method->destroy(drv);
     free(drv);
 }

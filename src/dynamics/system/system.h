@@ -134,8 +134,8 @@ static inline const struct follower *tribo_normals_follower(const tribo_system *
     return s->count && s->by[i] ? &s->follower[s->by[i] - 1] : NULL;
 }
 
-/* Creates a system. The caller then sets contacts, M, K and J, and C and AC if there is damping: rows = 0 means no damping. Returns a
- * status. */
+/* Creates a system. The caller then sets contacts, M, K and J, and C and AC if there is damping: rows = 0 means no damping.
+ * Returns a status. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact);
 
 /* Takes C and AC = M^-1 C in the place of those of sys. */
@@ -331,8 +331,8 @@ int tribo_error(char *message, int status, const char *format, ...)
 /* What a number must be, beside finite. */
 enum range { FINITE, NOT_NEGATIVE, POSITIVE };
 
-/* Returns TRIBO_OK if x is finite and in range; else an error, with the message "... is not finite", or negative, or not positive,
- * which begins as format says. */
+/* Returns TRIBO_OK if x is finite and in range; else TRIBO_ERR_NOT_FINITE, _NEGATIVE or _NOT_POSITIVE. The message is the subject,
+ * formatted, and "is not finite", "is negative" or "is not positive". */
 int tribo_check_number(char *message, enum range range, double x, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 4, 5)))
