@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "tool.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +87,16 @@ struct outcome end_tool(pid_t child)
     return o;
 }
 
+const char *form(const char *format, ...)
+{
+    static char text[TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return text;
+}
+
 struct outcome run_tool(const char *options)
 {
     return end_tool(begin_tool(options));
@@ -104,6 +115,7 @@ void assert_ends(const struct outcome *o, const char *what)
 void assert_refused(const char *options, const char *what, const char *part)
 {
     const struct outcome o = run_tool(options);
+    what = what ? what : options;
     assert_ends(&o, what);
     require(says(o.err, part), "%s: \"%s\" is not in %s", what, part, o.err);
 }

@@ -17,6 +17,9 @@ void read_text(const char *path, char *text);
 void write_bytes(const char *path, const char *bytes, size_t length);
 void write_text(const char *path, const char *text);
 
+/* printf into a text that lives until the next call: options of a run. */
+const char *form(const char *format, ...);
+
 /* Begins a run, and waits for its end; options are parted by single blanks. */
 pid_t begin_tool(const char *options);
 struct outcome end_tool(pid_t child);
@@ -25,7 +28,7 @@ struct outcome run_tool(const char *options);
 /* Status 1, and one line on stderr that prints. */
 void assert_ends(const struct outcome *o, const char *what);
 
-/* The same, and the line holds part. */
+/* The same, and the line holds part. what: in messages; NULL: the options. */
 void assert_refused(const char *options, const char *what, const char *part);
 
 int has_no_number(const char *text);

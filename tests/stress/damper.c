@@ -356,12 +356,11 @@ TEST(options)
     };
     write_chain();
     for (size_t k = 0; k < COUNT(bad); k++) {
-        char line[TEXT], option[100], values[200];
+        char option[100], values[200];
         snprintf(values, sizeof values, "%s", bad[k].values);
         for (char *value = strtok(values, " "); value; value = strtok(NULL, " ")) {
             snprintf(option, sizeof option, "%s %s", bad[k].option, value);
-            snprintf(line, sizeof line, "%s %s", CHAIN, option);
-            assert_refused(line, option, option);
+            assert_refused(form("%s %s", CHAIN, option), option, option);
         }
     }
     /* what only the structure can tell: too much work, or nothing to work with */
@@ -452,10 +451,9 @@ TEST(same_limit)
     write_text("c.txt", "# steel on steel\n2,0,0,x  mu=2 load=0.05 \r\n");
     write_text("o.txt", "contact 2,0,0,x limit=0.1\n");
     for (size_t k = 0; k < COUNT(way); k++) {
-        char line[TEXT], table[TEXT];
+        char table[TEXT];
         double limit, hz, amplitude;
-        snprintf(line, sizeof line, OWN " --load 4,0,0,x %s", way[k]);
-        assert_runs(line);
+        assert_runs(form(OWN " --load 4,0,0,x %s", way[k]));
         read_text("damper-curve.csv", table);
         require(sscanf(strchr(table, '\n'), "%lf,%lf,%lf", &limit, &hz, &amplitude) == 3, "%s", table);
         first = k ? first : amplitude;

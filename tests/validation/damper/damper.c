@@ -83,9 +83,7 @@ TEST(stiff_springs)
     double limit[3], power[3], stuck[3];
     for (int k = 0; k < 3; k++) {
         static const char *const words[] = {"", ":stiffness=1e4", ":stiffness=1e6"};
-        char options[800];
-        snprintf(options, sizeof options, "%s300,0,5,z%s --contact 400,0,5,z%s", own, words[k], words[k]);
-        const struct outcome o = assert_runs(options);
+        const struct outcome o = assert_runs(form("%s300,0,5,z%s --contact 400,0,5,z%s", own, words[k], words[k]));
         require(!says(o.out, "not found"), "%s", o.out);
         limit[k] = value_of("damper.best.limit");
         power[k] = value_of("damper.best.power");

@@ -8,6 +8,8 @@
 #include "support.h"
 #include "tool.h"
 
+#define HEAD "%%MatrixMarket matrix coordinate real symmetric\n"
+
 #undef I
 #define I ((double complex)_Complex_I) /* _Complex_I is of float */
 
@@ -34,11 +36,9 @@ TEST(spring)
 {
     static const char structure[] = "--mass spring.mtx --stiffness spring.mtx --dofs spring.txt --load 1,0,0,x --damping 0.05 "
                                     "--drive 0.17507043740108488 --contact 1,0,0,x:stiffness=";
-    char options[400];
-    write_text("spring.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("spring.mtx", HEAD "1 1 1\n1 1 1.0\n");
     write_text("spring.txt", "1 1 1 1 0 0\n");
-    snprintf(options, sizeof options, "%s1 --limits 0.25:1:3", structure);
-    const struct outcome o = assert_runs(options);
+    const struct outcome o = assert_runs(form("%s1 --limits 0.25:1:3", structure));
     require(strstr(o.out, "           0.5       3.3866 ") != NULL, "%s", o.out);
     assert_close(value_of("damper.free"), 1.0 / hypot(1.0 - 1.21, 0.11), 1e-9);
     assert_close(value_of("damper.stuck"), 1.0 / hypot(2.0 - 1.21, 0.11), 1e-9);
@@ -48,35 +48,27 @@ TEST(spring)
     const double loop = 4.0 * limit * (value_of("damper.best.amplitude") - limit) * 0.17507043740108488;
     assert_close(value_of("damper.best.power"), loop, 1e-8);
     assert_exact(value_of("damper.gaps"), 0.0);
-    snprintf(options, sizeof options, "%s0", structure);
-    assert_refused(options, options, "stiffness=0: must be above 0");
-    snprintf(options, sizeof options, "%s1e300", structure);
-    assert_refused(options, options, "more than 1e+09 times that of the structure");
+    assert_refused(form("%s0", structure), NULL, "stiffness=0: must be above 0");
+    assert_refused(form("%s1e300", structure), NULL, "more than 1e+09 times that of the structure");
     for (int k = 0; k < 2; k++) {
-        snprintf(options, sizeof options, "%s1 --limits 0.5%s", structure, k ? " --method march" : " --check 1");
-        const struct outcome marched = assert_runs(options);
+        const struct outcome marched = assert_runs(form("%s1 --limits 0.5%s", structure, k ? " --method march" : " --check 1"));
         require(says(marched.out, "           0.5       3.3866 "), "%s", marched.out);
         assert_close(k ? 0.0 : value_of("damper.check.amplitude"), 0.0, 1e-4);
     }
     /* its loop at one limit takes the power; stuck, it lags by what damping makes of it */
-    snprintf(options, sizeof options, "%s1 --limits 0.5 --output 1,0,0,x", structure);
-    assert_runs(options);
+    assert_runs(form("%s1 --limits 0.5 --output 1,0,0,x", structure));
     assert_close(loop_power("damper-loop.csv", 0.17507043740108488), column_of("damper-curve.csv", 4), 1e-4);
-    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --output=1,0,0,x", structure);
-    assert_runs(options);
+    assert_runs(form("%s1 --limits 1000 --output 1,0,0,x --output=1,0,0,x", structure));
     assert_close(column_of("damper-curve.csv", 11), 1.0 / hypot(0.79, 0.11), 1e-8);
     assert_close(column_of("damper-curve.csv", 12), -atan2(0.11, 0.79) * 180.0 / PI, 1e-6);
     assert_exact(column_of("damper-curve.csv", 14), column_of("damper-curve.csv", 12));
-    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --method march --harmonics 2", structure);
-    assert_runs(options);
+    assert_runs(form("%s1 --limits 1000 --output 1,0,0,x --method march --harmonics 2", structure));
     assert_close(column_of("damper-curve.csv", 11), 1.0 / hypot(0.79, 0.11), 1e-4);
     assert_close(column_of("damper-curve.csv", 12), -atan2(0.11, 0.79) * 180.0 / PI, 0.1);
     assert_close(column_of("damper-curve.csv", 13), 1.0 / hypot(0.79, 0.11), 1e-4);
     assert_close(column_of("damper-curve.csv", 14), 0.0, 1e-6);
-    snprintf(options, sizeof options, "%s1 --output 2,0,0,x", structure);
-    assert_refused(options, options, "option --output 2,0,0,x");
-    snprintf(options, sizeof options, "%s1 --check 1 --law quinn", structure);
-    assert_refused(options, options, "with --law quinn marching takes rigid contacts only");
+    assert_refused(form("%s1 --output 2,0,0,x", structure), NULL, "option --output 2,0,0,x");
+    assert_refused(form("%s1 --check 1 --law quinn", structure), NULL, "with --law quinn marching takes rigid contacts only");
 }
 END_TEST
 
@@ -86,7 +78,6 @@ END_TEST
 
 static void write_pair(void)
 {
-#define HEAD "%%MatrixMarket matrix coordinate real symmetric\n"
     write_text("pair-m.mtx", HEAD "4 4 4\n1 1 1\n2 2 1\n3 3 2\n4 4 2\n");
     write_text("pair-k.mtx", HEAD "4 4 6\n1 1 5\n2 2 5\n3 1 -2\n4 2 -2\n3 3 2\n4 4 2\n");
     write_text("pair-c.mtx", HEAD "4 4 6\n1 1 0.25\n2 2 0.25\n3 1 -0.1\n4 2 -0.1\n3 3 0.2\n4 4 0.2\n");
@@ -117,12 +108,9 @@ TEST(loads)
     const double complex force[2][2] = {{3.0 * turn, 1.0}, {0.5 * i, i}};
     write_pair();
     for (int k = 0; k < 2; k++) {
-        char options[400];
         const double complex stuck = pair_motion(1, force[k][0], force[k][1]);
         for (int march = 0; march < 2; march++) {
-            snprintf(options, sizeof options, PAIR "--damping-matrix pair-c.mtx %s --method %s", given[k],
-                     march ? "march" : "exact");
-            assert_runs(options);
+            assert_runs(form(PAIR "--damping-matrix pair-c.mtx %s --method %s", given[k], march ? "march" : "exact"));
             assert_close(value_of("damper.free"), cabs(pair_motion(0, force[k][0], force[k][1])), march ? 1e-4 : 1e-9);
             assert_close(value_of("damper.stuck"), cabs(stuck), march ? 1e-4 : 1e-9);
             assert_close(value_of("damper.free"), value_of("damper.free.analytic"), march ? 1e-4 : 1e-9);
@@ -131,8 +119,7 @@ TEST(loads)
             assert_close(column_of("damper-curve.csv", 12), degrees_of(stuck), march ? 0.2 : 1e-6);
         }
         /* what the loads put in, damping and friction take: both powers found apart from each other */
-        snprintf(options, sizeof options, PAIR "--damping-matrix pair-c.mtx %s --limits 0.1 --check 1", given[k]);
-        assert_runs(options);
+        assert_runs(form(PAIR "--damping-matrix pair-c.mtx %s --limits 0.1 --check 1", given[k]));
         assert_close(value_of("damper.check.amplitude"), 0.0, 1e-4);
         assert_close(value_of("damper.check.balance"), 0.0, 1e-4);
     }
@@ -153,9 +140,7 @@ TEST(damping_by_mode)
     write_text("ratios.txt", "# of mode\n0.01\n0.02\n");
     static const char *const way[] = {"--damping 0.01,0.02", "--damping-ratios ratios.txt", "--damping 0.02"};
     for (int k = 0; k < 3; k++) {
-        char options[400];
-        snprintf(options, sizeof options, PAIR "--drive 0 --load 2,0,0,x %s", way[k]);
-        assert_runs(options);
+        assert_runs(form(PAIR "--drive 0 --load 2,0,0,x %s", way[k]));
         amplitude[k] = value_of("damper.free");
         assert_close(amplitude[k], value_of("damper.free.analytic"), 1e-9 * amplitude[k]);
     }
@@ -309,7 +294,7 @@ END_TEST
 /* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
 TEST(loose_row)
 {
-#define MATRIX "%%MatrixMarket matrix coordinate real symmetric\n4 4 "
+#define MATRIX HEAD "4 4 "
 #define STRUCTURE " --stiffness loose.mtx --dofs loose.txt --load 2,0,0,x --contact 1,0,0,x"
     write_text("loose.mtx", MATRIX "4\n1 1 1.0\n2 2 2.0\n3 3 7.0\n4 4 0.0\n");
     write_text("together.mtx", MATRIX "10\n1 1 2\n2 1 1\n3 1 0.5\n4 1 0.7\n2 2 3\n3 2 0.4\n4 2 1\n3 3 2\n4 3 0.6\n4 4 2\n");
@@ -331,16 +316,14 @@ END_TEST
 TEST(own_limit)
 {
     static const char *const own[] = {"limit=3", "limit=0"};
-    char options[400];
-    write_text("own-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
-    write_text("own-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("own-m.mtx", HEAD "2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("own-k.mtx", HEAD "2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
     write_text("own.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
     for (size_t k = 0; k < 2; k++) {
-        snprintf(options, sizeof options,
-                 "--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x:%s "
+        assert_runs(
+            form("--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x:%s "
                  "--contact 1,0,0,x --limits 0.1:1:3",
-                 own[k]);
-        assert_runs(options);
+                 own[k]));
         assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
         assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-12);
     }
@@ -357,13 +340,11 @@ TEST(backbone)
                                        {2.0, 1.0935981120212, 0.101057277142}};
     static const char one[] = "--mass one.mtx --stiffness one.mtx --dofs one.txt --damping 0.05 --output 1,0,0,x "
                               "--contact 1,0,0,x:stiffness=1";
-    char options[400];
-    write_text("one.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("one.mtx", HEAD "1 1 1\n1 1 1.0\n");
     write_text("one.txt", "1 1 1 1 0 0\n");
     for (size_t k = 0; k < COUNT(values); k++) {
-        snprintf(options, sizeof options, "%s --backbone 1 --limits 0.5 --amplitudes %g%s", one, values[k][0],
-                 k ? " --load 1,0,0,x" : "");
-        const struct outcome o = assert_runs(options);
+        const struct outcome o =
+            assert_runs(form("%s --backbone 1 --limits 0.5 --amplitudes %g%s", one, values[k][0], k ? " --load 1,0,0,x" : ""));
         require(says(o.out, "model error: none"), "%s", o.out);
         assert_exact(column_of("damper-backbone.csv", 1), values[k][0]);
         assert_close(2.0 * PI * column_of("damper-backbone.csv", 2), values[k][1], 1e-8);
@@ -371,8 +352,7 @@ TEST(backbone)
         assert_close(value_of("damper.backbone.damping"), values[k][2] + 0.05 / values[k][1], 1e-9);
         require((column_of("damper-backbone.csv", 4) < 1.0) == (k > 0), "sticks for %g", column_of("damper-backbone.csv", 4));
     }
-    snprintf(options, sizeof options, "%s --backbone 1 --limits 0.5 --amplitudes 0.6:2:9", one);
-    assert_runs(options);
+    assert_runs(form("%s --backbone 1 --limits 0.5 --amplitudes 0.6:2:9", one));
     assert_close(column_of("damper-backbone.csv", 2) * 2.0 * PI, values[1][1], 1e-8);
     require(value_of("damper.backbone.damping") > values[2][2] + 0.05 / values[2][1], "the largest damping is less than another");
     assert_exact(value_of("damper.gaps"), 0.0);
@@ -389,18 +369,15 @@ TEST(backbone)
         {"--cycle 10 --limits 1 --base x:acceleration=1", "--cycle: it takes no --base"},
         {"--backbone 2 --limits 1 --amplitudes 1", "the model keeps 1 mode"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
-        snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
-        assert_refused(options, options, wrong[k][1]);
+        assert_refused(form("%s %s", one, wrong[k][0]), NULL, wrong[k][1]);
     }
-    write_text("two-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
-    write_text("two-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("two-m.mtx", HEAD "2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("two-k.mtx", HEAD "2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
     write_text("two.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
     for (int mode = 1; mode <= 2; mode++) { /* above all slip, both frequencies are those without friction */
-        snprintf(options, sizeof options,
-                 "--mass two-m.mtx --stiffness two-k.mtx --dofs two.txt --output 0,0,0,x --contact 1,0,0,x:stiffness=1 "
-                 "--limits 1e-6 --amplitudes 1 --backbone %d",
-                 mode);
-        assert_runs(options);
+        assert_runs(form("--mass two-m.mtx --stiffness two-k.mtx --dofs two.txt --output 0,0,0,x --contact 1,0,0,x:stiffness=1 "
+                         "--limits 1e-6 --amplitudes 1 --backbone %d",
+                         mode));
         assert_close(2.0 * PI * column_of("damper-backbone.csv", 2), sqrt(2.0 * mode - 1.0), 1e-5);
     }
     write_text("two-k.mtx", HEAD "2 2 2\n1 1 1\n2 2 4\n"); /* mode 2 moves the other mass */
@@ -418,12 +395,10 @@ TEST(cycle)
     static const char one[] = "--mass one.mtx --stiffness one.mtx --dofs one.txt --output 1,0,0,x --limits 0.6 "
                               "--contact 1,0,0,x:belt=0.2";
     const double xx = 23.25, xy = 2.25 * sqrt(3.0), yy = 7.75, load = 110.0 * xx / (xx * (yy + 11.0) - xy * xy);
-    char options[500], matrix[200];
-    write_text("one.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("one.mtx", HEAD "1 1 1\n1 1 1.0\n");
     write_text("one.txt", "1 1 1 1 0 0\n");
     for (int k = 0; k < 2; k++) {
-        snprintf(options, sizeof options, "%s:static=1.6666666666666667 --damping 1e-13 --cycle %d", one, 8 * k);
-        const struct outcome o = assert_runs(options);
+        const struct outcome o = assert_runs(form("%s:static=1.6666666666666667 --damping 1e-13 --cycle %d", one, 8 * k));
         assert_close(value_of("damper.cycle.period"), 8.0688878716, 1e-9);
         assert_close(value_of("damper.cycle.amplitude"), hypot(0.4, 0.2), 1e-10);
         assert_close(value_of("damper.cycle.stick1"), 4.0 / 8.0688878716, 1e-9);
@@ -431,20 +406,17 @@ TEST(cycle)
         assert_close(value_of("damper.sliding.frequency"), 0.5 / PI, 1e-9);
         require(says(o.out, "stable\n"), "%s", o.out);
     }
-    snprintf(options, sizeof options, "%s --damping 0.05 --cycle 0", one); /* without static= the block comes to slide */
-    require(says(assert_runs(options).out, "no cycle was found"), "a cycle");
+    /* without static= the block comes to slide */
+    require(says(assert_runs(form("%s --damping 0.05 --cycle 0", one)).out, "no cycle was found"), "a cycle");
     assert_exact(value_of("damper.gaps"), 1.0);
-    write_text("squeal-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
-    write_text("squeal-c.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 0.1\n2 2 0.1\n");
-    snprintf(matrix, sizeof matrix, "%%%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 %.17g\n2 1 %.17g\n2 2 %.17g\n",
-             xx, xy, yy);
-    write_text("squeal-k.mtx", matrix);
+    write_text("squeal-m.mtx", HEAD "2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("squeal-c.mtx", HEAD "2 2 2\n1 1 0.1\n2 2 0.1\n");
+    write_text("squeal-k.mtx", form("%s2 2 3\n1 1 %.17g\n2 1 %.17g\n2 2 %.17g\n", HEAD, xx, xy, yy));
     write_text("squeal.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
-    snprintf(options, sizeof options,
-             "--mass squeal-m.mtx --stiffness squeal-k.mtx --dofs squeal.txt --damping-matrix squeal-c.mtx --output 0,0,0,x "
+    const struct outcome o = assert_runs(
+        form("--mass squeal-m.mtx --stiffness squeal-k.mtx --dofs squeal.txt --damping-matrix squeal-c.mtx --output 0,0,0,x "
              "--contact 0,0,0,x:belt=0.5:normal=y,11:mu=0.6:load=%.17g --cycle 0",
-             load);
-    const struct outcome o = assert_runs(options);
+             load));
     assert_close(value_of("damper.cycle.period"), 1.53650780675, 1e-9);
     assert_close(value_of("damper.cycle.amplitude"), 0.5 * (0.27080300 + 0.14959332), 1e-7);
     assert_close(value_of("damper.cycle.multiplier"), hypot(0.758384, 0.424284), 1e-5);
@@ -456,8 +428,7 @@ TEST(cycle)
                                            {"--cycle -1", "must be at least 0"},
                                            {"--cycle 0 --contact 1,0,0,x:static=0.5", "at least that while sliding"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
-        snprintf(options, sizeof options, "%s %s", one, wrong[k][0]);
-        assert_refused(options, options, wrong[k][1]);
+        assert_refused(form("%s %s", one, wrong[k][0]), NULL, wrong[k][1]);
     }
 }
 END_TEST
@@ -506,8 +477,7 @@ TEST(follow)
                                            {"--drive 0.1:0.2:3 --follow up --check 1", "it takes no --check"},
                                            {"--drive 0.1:0.2:3 --follow on", "must be up, down, up:events or down:events"}};
     for (size_t k = 0; k < COUNT(wrong); k++) {
-        snprintf(text, sizeof text, STOPS "%s", wrong[k][0]);
-        assert_refused(text, wrong[k][0], wrong[k][1]);
+        assert_refused(form(STOPS "%s", wrong[k][0]), wrong[k][0], wrong[k][1]);
     }
 }
 END_TEST
