@@ -122,7 +122,7 @@ void read_contact(struct text *t, void *contacts)
     c.to.origin = t->place;
     c.directions = second ? 2 : 1;
     for (int k = second ? 2 : 1; k > 0; k--) {
-        all->contact = need_room(all->contact, all->count, &all->room, sizeof *all->contact);
+        all->contact = need_room(all->contact, all->count, sizeof *all->contact);
         all->contact[all->count++] = c;
         c.directions = 0;
         c.at.direction = c.to.direction = second;
@@ -142,7 +142,7 @@ static void add_load(struct text *t, int supports, struct loads *all)
                supports ? "acceleration=NUMBER phase=DEGREES" : "force=FORCE phase=DEGREES");
     die_at_if(t, supports && isnan(l.size), "acceleration= is missing");
     l.phase = isnan(l.phase) ? 0.0 : l.phase;
-    all->load = need_room(all->load, all->count, &all->room, sizeof *all->load);
+    all->load = need_room(all->load, all->count, sizeof *all->load);
     all->load[all->count++] = l;
 }
 
@@ -183,7 +183,7 @@ void add_normals(struct contacts *all)
             n.ratio = 1.0;
             n.directions = 0;
             n.line = NULL;
-            all->contact = need_room(all->contact, all->count + all->normals, &all->room, sizeof *all->contact);
+            all->contact = need_room(all->contact, all->count + all->normals, sizeof *all->contact);
             all->contact[all->count + all->normals++] = n;
         }
     }

@@ -45,7 +45,7 @@ struct load {
 
 struct loads {
     struct load *load;
-    size_t count, room;
+    size_t count;
 };
 
 /* "X,Y,Z,DIR" */
@@ -57,7 +57,7 @@ reader read_load, read_base;
 
 struct contacts {
     struct contact *contact; /* [count + normals] */
-    size_t count, room;
+    size_t count;
     size_t normals; /* normal directions, behind all contacts, in the order of their contacts; added by add_normals */
     int vary;       /* 1: a contact follows --limits */
     int by_load;    /* 1: one that does has mu=, so that --limits gives normal loads */

@@ -31,7 +31,7 @@ void ask_sample(struct curve *c, double x, int asked)
         c->sample[k].asked |= asked;
         return;
     }
-    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
+    c->sample = need_room(c->sample, c->count, sizeof *c->sample);
     memmove(&c->sample[k + 1], &c->sample[k], (c->count - k) * sizeof *c->sample);
     c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->record, sizeof(double))};
     c->count++;
@@ -201,7 +201,8 @@ static void climb(struct curve *c, struct worker *w, double x)
         if (!(fabs(top - x) > 1e-8 * whole)) {
             return;
         }
-        const struct motion *there = &c->sample[find_at(c, w, top)].motion;
+        const size_t k = find_at(c, w, top); /* may move the samples */
+        const struct motion *there = &c->sample[k].motion;
         x = there->found && there->amplitude > reached ? top : x;
     }
 }
@@ -224,19 +225,17 @@ void find_largest(struct curve *c, struct worker *w, double tolerance)
 
 size_t spread_samples(const struct curve *c, size_t most, const struct sample **chosen)
 {
-    const struct sample **all = need_memory(c->count, sizeof *all);
-    size_t count = 0;
+    size_t count = 0, passed = 0, taken = 0;
     for (size_t k = 0; k < c->count; k++) {
-        if (c->sample[k].asked && found(c, k)) {
-            all[count++] = &c->sample[k];
-        }
+        count += c->sample[k].asked && found(c, k);
     }
     const size_t wanted = count < most ? count : most;
-    for (size_t i = 0; i < wanted; i++) {
-        chosen[i] = all[(2 * i + 1) * count / (2 * wanted)];
+    for (size_t k = 0; k < c->count; k++) {
+        if (c->sample[k].asked && found(c, k) && passed++ == (2 * taken + 1) * count / (2 * wanted)) {
+            chosen[taken++] = &c->sample[k];
+        }
     }
-    free(all);
-    return wanted;
+    return taken;
 }
 
 int searched(const struct sample *s)

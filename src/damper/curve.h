@@ -16,8 +16,8 @@ struct curve {
     int over_limit; /* else over the frequency */
     double fixed;   /* the other one */
     struct sample *sample;
-    size_t count, room; /* ascending in x, or in the order of a followed curve */
-    size_t record;      /* numbers in the record of a motion */
+    size_t count;  /* ascending in x, or in the order of a followed curve */
+    size_t record; /* numbers in the record of a motion */
 };
 
 /* Adds a sample at x; a sample that is there already becomes asked if asked is 1. */
@@ -39,7 +39,7 @@ const struct sample *largest_of(const struct curve *c, enum quantity of);
 /* Finds the largest amplitude to rounding, by more samples at each top that is within the tolerance of the largest. */
 void find_largest(struct curve *c, struct worker *w, double tolerance);
 
-/* chosen [most] out: samples that were asked for and found, spread over the curve. Returns their number. */
+/* chosen [most > 0] out: samples that were asked for and found, spread over the curve. Returns their number. */
 size_t spread_samples(const struct curve *c, size_t most, const struct sample **chosen);
 
 /* 1 if the motion was searched; after an interruption some were not. */

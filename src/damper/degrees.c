@@ -45,7 +45,7 @@ static struct degree *read_nodes(const char *path, size_t *count)
 {
     struct text t = open_text(path);
     struct degree *all = NULL;
-    size_t room = 0, n = 0;
+    size_t n = 0;
     int reading = 0;
     while (next_data(&t)) {
         if (*t.at == '*') {
@@ -57,7 +57,7 @@ static struct degree *read_nodes(const char *path, size_t *count)
             d.row = next_whole(&t, "node", ",", 1, INT_MAX);
             next_coordinates(&t, ",", ",", 0, d.at);
             expect_end(&t);
-            all = need_room(all, n, &room, sizeof *all);
+            all = need_room(all, n, sizeof *all);
             all[n++] = d;
         }
     }
@@ -114,9 +114,9 @@ struct degree *read_degrees(const char *path, size_t *count)
     struct text t = open_text(path);
     struct degree *dof = NULL;
     const int calculix = is_named(path, ".dof");
-    size_t room = 0, n = 0;
+    size_t n = 0;
     for (; next_data(&t); n++) {
-        dof = need_room(dof, n, &room, sizeof *dof);
+        dof = need_room(dof, n, sizeof *dof);
         dof[n] = read_degree(&t, calculix);
         dof[n].row = calculix ? n + 1 : dof[n].row;
     }

@@ -16,7 +16,7 @@ struct entry {
 };
 
 struct entries {
-    size_t count, room;
+    size_t count;
     struct entry *entry;
 };
 
@@ -58,7 +58,7 @@ static size_t next_index(struct text *t, const char *what, const struct rows *ro
 
 static void add_entry(struct entries *all, struct entry e)
 {
-    all->entry = need_room(all->entry, all->count, &all->room, sizeof *all->entry);
+    all->entry = need_room(all->entry, all->count, sizeof *all->entry);
     all->entry[all->count++] = e;
 }
 
@@ -107,7 +107,7 @@ struct sparse read_matrix(const char *path, const struct rows *rows)
 {
     const int calculix = is_named(path, ".sti") || is_named(path, ".mas");
     struct text t = open_text(path);
-    struct entries all = {0, 0, NULL};
+    struct entries all = {0, NULL};
     size_t announced = SIZE_MAX;
     const int symmetric = calculix || read_head(&t, rows, &announced);
     char *diagonal = need_memory(rows->count, 1);

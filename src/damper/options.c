@@ -98,7 +98,7 @@ static void read_damping_file(struct text *value, void *to)
 static void read_output(struct text *value, void *to)
 {
     struct outputs *all = to;
-    all->place = need_room(all->place, all->count, &all->room, sizeof *all->place);
+    all->place = need_room(all->place, all->count, sizeof *all->place);
     all->place[all->count++] = read_place(value);
 }
 
@@ -352,7 +352,7 @@ static const struct option *find_option(const char *name)
 /* Returns text, which lives until free_options. */
 static char *keep(struct options *o, char *text)
 {
-    o->texts.text = need_room(o->texts.text, o->texts.count, &o->texts.room, sizeof *o->texts.text);
+    o->texts.text = need_room(o->texts.text, o->texts.count, sizeof *o->texts.text);
     o->texts.text[o->texts.count++] = text;
     return text;
 }

@@ -8,12 +8,12 @@ enum { DEFAULT_MODES = 12 /* kept by default */ };
 
 struct outputs {
     struct place *place; /* [count] */
-    size_t count, room;
+    size_t count;
 };
 
 struct texts {
     char **text; /* [count] */
-    size_t count, room;
+    size_t count;
 };
 
 struct options {

@@ -38,14 +38,15 @@ void *need_memory(size_t count, size_t size)
     return memory;
 }
 
-void *need_room(void *array, size_t count, size_t *room, size_t size)
+/* There is room for a power of two. */
+void *need_room(void *array, size_t count, size_t size)
 {
-    if (count < *room) {
+    if (count & (count - 1)) {
         return array;
     }
-    *room = 2 * *room + 256;
-    void *more = *room <= SIZE_MAX / size ? realloc(array, *room * size) : NULL;
-    die_if(!more, "out of memory for %zu times %zu bytes", *room, size);
+    const size_t room = count ? 2 * count : 1;
+    void *more = room <= SIZE_MAX / size ? realloc(array, room * size) : NULL;
+    die_if(!more, "out of memory for %zu times %zu bytes", room, size);
     return more;
 }
 

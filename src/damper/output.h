@@ -23,8 +23,9 @@ void need(int status, const char *detail);
 /* malloc that ends the program instead of failing. */
 void *need_memory(size_t count, size_t size);
 
-/* Room for one element of that size more than the count that an array holds: the array, moved where that is needed. */
-void *need_room(void *array, size_t count, size_t *room, size_t size);
+/* Room for one element of that size more than the count that an array holds, which has grown by such calls from NULL: the array,
+ * moved where that is needed. */
+void *need_room(void *array, size_t count, size_t size);
 
 /* printf into memory of its own. */
 char *new_text(const char *format, ...) PRINTF_LIKE(1);

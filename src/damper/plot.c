@@ -65,7 +65,7 @@ static void begin_picture(const struct tables *t, const char *what, const char *
 static void plot_two(const struct tables *t, const char *what, const char *scale, int left, const char *const *axis,
                      const char *const *title)
 {
-    if (t->script) {
+    if (t->script && t->motions > 0) {
         char *file = file_of(t, what, "csv");
         begin_picture(t, what, axis[0], axis[1]);
         fprintf(t->script,

@@ -80,6 +80,18 @@ void free_curves(struct curve *c, size_t count)
     free(c);
 }
 
+const char *first_message(const struct curve *c, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < c[k].count; i++) {
+            if (c[k].sample[i].motion.message[0]) {
+                return c[k].sample[i].motion.message;
+            }
+        }
+    }
+    return "not looked for";
+}
+
 /* Each step finds two more values, in the middles of the halves, and keeps the least of three with its neighbours: the interval
  * is halved. */
 double find_least(double low, double high, double part,

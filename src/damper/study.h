@@ -70,6 +70,9 @@ void run_study(struct study *s);
 struct curve *run_curves(const struct study *s, int over_limit, const double *fixed, size_t count);
 void free_curves(struct curve *c, size_t count);
 
+/* The first message of a motion of the curves [count] that was not found. */
+const char *first_message(const struct curve *c, size_t count);
+
 /* The limit between low and high where the value is least, to that part of it, for a value that falls and then rises; *least is
  * the value. values: value [count] out, of limit [count]; a few at a time, for those to share the work. */
 double find_least(double low, double high, double part,

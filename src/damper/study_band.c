@@ -18,19 +18,6 @@ static void largest_amplitudes(void *data, const double *limit, double *value, s
     free_curves(c, count);
 }
 
-/* The first message of a motion that was not found. */
-static const char *first_message(const struct curve *c, size_t count)
-{
-    for (size_t k = 0; k < count; k++) {
-        for (size_t i = 0; i < c[k].count; i++) {
-            if (c[k].sample[i].motion.message[0]) {
-                return c[k].sample[i].motion.message;
-            }
-        }
-    }
-    return "not looked for";
-}
-
 /* Largest amplitudes over the limits may have several valleys: those within this factor of the lowest value are searched. */
 static const double NEAR_LOWEST = 1.25;
 

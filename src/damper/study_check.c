@@ -165,7 +165,7 @@ static void report(const struct study *s, const struct sample *const *sample, co
         unbalanced = fmax(unbalanced, relative_difference(here->input, here->friction + here->damped));
     }
     write_result(s->tables, "check.amplitude", amplitude);
-    write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
+    write_result(s->tables, "check.power", power > 0.0 ? power / (most > 0.0 ? most : power) : 0.0);
     write_result(s->tables, "check.balance", unbalanced);
     close_table(s->tables, table, "check", "csv");
 }

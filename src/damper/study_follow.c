@@ -24,7 +24,7 @@ struct trail {
 
 static struct sample *add_sample(struct curve *c, double hz)
 {
-    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
+    c->sample = need_room(c->sample, c->count, sizeof *c->sample);
     struct sample *s = &c->sample[c->count++];
     *s = (struct sample){
         .x = hz, .motion = {.limit = c->fixed, .hz = hz, .stable = -1}, .y = need_memory(c->record, sizeof(double))};
@@ -81,35 +81,38 @@ void follow_curve(struct curve *c, struct worker *w)
 
 /* ------------------------------------------------------------------------------------------------------------- the folds */
 
-/* Returns the index of the first fold among samples from `from` on; c->count: none. */
-static size_t next_fold(const struct curve *c, size_t from)
+/* Returns fold i of the curve, counted from 0; NULL: there are less. */
+static const struct sample *fold_of(const struct curve *c, size_t i)
 {
-    while (from < c->count && !(c->sample[from].motion.found && strncmp(c->sample[from].motion.message, "fold", 4) == 0)) {
-        from++;
+    for (size_t k = 0; k < c->count; k++) {
+        const struct motion *m = &c->sample[k].motion;
+        if (m->found && strncmp(m->message, "fold", 4) == 0 && i-- == 0) {
+            return &c->sample[k];
+        }
     }
-    return from;
+    return NULL;
 }
 
 void report_folds(const struct study *s, const struct curve *c, size_t count)
 {
     struct study finer = *s;
     double *fixed = need_memory(count, sizeof *fixed), change = 0.0;
+    const struct sample *fold;
     size_t folds = 0, others = 0;
     for (size_t k = 0; k < count; k++) {
         fixed[k] = c[k].fixed;
-        for (size_t at = next_fold(&c[k], 0), i = 1; at < c[k].count; at = next_fold(&c[k], at + 1), i++, folds++) {
-            const struct motion *m = &c[k].sample[at].motion;
+        for (size_t i = 0; (fold = fold_of(&c[k], i)); i++, folds++) {
+            const struct motion *m = &fold->motion;
             printf("  %12.5g  the curve turns back at %.10g, amplitude %.8g: %s\n", m->limit, m->hz, m->amplitude, m->message);
-            write_value(s->tables->values, m->hz, "%s.fold%zu.%zu", s->tables->name, k + 1, i);
+            write_value(s->tables->values, m->hz, "%s.fold%zu.%zu", s->tables->name, k + 1, i + 1);
         }
     }
     finer.damper = &s->model->finer;
     struct curve *more = folds && !s->model->whole && !interrupted() ? run_curves(&finer, 0, fixed, count) : NULL;
     for (size_t k = 0; more && k < count; k++) {
-        size_t at = next_fold(&c[k], 0), there = next_fold(&more[k], 0);
-        for (; there < more[k].count; there = next_fold(&more[k], there + 1), others++) {
-            change = at < c[k].count ? fmax(change, relative_difference(more[k].sample[there].x, c[k].sample[at].x)) : change;
-            at = at < c[k].count ? next_fold(&c[k], at + 1) : at;
+        for (size_t i = 0; (fold = fold_of(&more[k], i)); i++, others++) {
+            const struct sample *here = fold_of(&c[k], i);
+            change = here ? fmax(change, relative_difference(fold->x, here->x)) : change;
         }
     }
     if (more && others == folds) {

@@ -80,8 +80,12 @@ static struct motion show_motion(struct study *s, struct curve *c, double limit,
 static void find_most_power(struct study *s, struct curve *c)
 {
     const struct sample *most = largest_of(c, POWER);
-    const size_t at = most && most->motion.friction > 0.0 ? (size_t)(most - c->sample) : c->count;
-    if (at == c->count) {
+    const size_t at = most ? (size_t)(most - c->sample) : c->count;
+    if (!most) {
+        printf("no motion was found at any of these %ss: %s\n", s->tables->limit, first_message(c, 1));
+        return;
+    }
+    if (!(most->motion.friction > 0.0)) {
         printf("friction dissipates nothing at any of these limits: nothing slips, or the contacts are where nothing moves\n");
         return;
     }

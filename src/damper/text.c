@@ -161,7 +161,7 @@ char *rest_of(const struct text *t)
 
 void add_number(struct list *list, double value)
 {
-    list->value = need_room(list->value, list->count, &list->room, sizeof *list->value);
+    list->value = need_room(list->value, list->count, sizeof *list->value);
     list->value[list->count++] = value;
 }
 

@@ -73,7 +73,7 @@ typedef void reader(struct text *value, void *to);
 /* "NUMBER,NUMBER,...", into a struct list. */
 struct list {
     double *value;
-    size_t count, room;
+    size_t count;
 };
 reader read_list;
 void add_number(struct list *list, double value);

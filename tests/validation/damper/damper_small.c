@@ -303,6 +303,8 @@ TEST(loose_row)
     const struct outcome o = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3");
     require(strstr(o.out, "loose.mtx: no stiffness holds row 4 (node 7, direction z)\n") != NULL, "%s", o.out);
     require(strstr(o.out, "no motion was found at any of these limits: not available here") != NULL, "%s", o.out);
+    const struct outcome one = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1 --limits 0.1:1:3");
+    require(says(one.out, "no motion was found at any of these limits: not available here"), "%s", one.out);
     assert_refused("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3 --follow up", "no curve",
                    "option --follow: no motion was found: not available here");
     assert_exact(value_of("damper.gaps"), 3.0);
@@ -327,6 +329,10 @@ TEST(own_limit)
         assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
         assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-12);
     }
+    /* stuck, friction takes nothing, but a law that never sticks lets it take some: all of it is the difference */
+    assert_runs("--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x "
+                "--limits 50 --drive 0.2 --check 1 --law smooth");
+    assert_exact(value_of("damper.check.power"), 1.0);
 }
 END_TEST
 
