@@ -1132,9 +1132,7 @@ subroutine trbdex(ih, ndof, np, kind, indx, cv, dx, ierr)
 
   call find_driven(ih, s, ierr, ndof)
   call require_least(ih, 'NP', np, 1, ierr)
-  if (ierr == TRIBO_OK) then
-    call s%driver%period_derivatives(kind(:np), indx(:np), c=cv(:2*ndof), extremes=dx(:, :np), stat=ierr)
-  end if
+  if (ierr == TRIBO_OK) call s%driver%period_derivatives(kind(:np), indx(:np), c=cv(:2*ndof), extremes=dx(:, :np), stat=ierr)
 end subroutine trbdex
 
 subroutine trbden(ih, n, np, kind, indx, de, ierr)

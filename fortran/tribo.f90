@@ -372,9 +372,7 @@ contains
     call expect_shape(w, 'state', shape(state), [3 + 2*max(room, 0), w%n])
     call expect_elements(w, dz, parameter, 4, f, df_dz)
     if (room < 0) w%status = TRIBO_ERR_NEGATIVE
-    if (w%status == TRIBO_OK) then
-      w%status = c_iwan_force(int(w%n, c_size_t), int(room, c_size_t), dz, parameter, state, f, df_dz)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_iwan_force(int(w%n, c_size_t), int(room, c_size_t), dz, parameter, state, f, df_dz)
     call blame(w, 'room', real(room, dp))
     call blame_elements(w, dz, parameter, ['kt  ', 'fs  ', 'chi ', 'beta'], reshape(state, [size(state)]))
     call finish(w, stat, errmsg)

@@ -1275,9 +1275,7 @@ contains
     integer(c_size_t) :: count
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_count(w%object, to_int(which), count)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_count(w%object, to_int(which), count)
     if (w%status /= TRIBO_OK) return
     if (count > most) then
       call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
@@ -1297,9 +1295,7 @@ contains
     real(dp) :: found(1)
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_real(w%object, to_int(which), found)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_real(w%object, to_int(which), found)
     if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
   end subroutine driver_real
@@ -1315,9 +1311,7 @@ contains
     call find_driver(this, w)
     call expect_count(w, 'sectors', sectors)
     call expect_count(w, 'order', order)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_set_ring(w%object, int(sectors, c_size_t), int(order, c_size_t))
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_set_ring(w%object, int(sectors, c_size_t), int(order, c_size_t))
     call finish(w, stat, errmsg)
   end subroutine set_ring
 
@@ -1332,9 +1326,7 @@ contains
 
     call find_driver(this, w)
     call expect_size(w, 'y', y, w%dimension)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_find_periodic(w%object, t, period, y)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_find_periodic(w%object, t, period, y)
     call finish(w, stat, errmsg)
   end subroutine find_periodic
 
@@ -1351,9 +1343,7 @@ contains
     call find_driver(this, w)
     call expect_size(w, 'y', y, w%dimension)
     found = period
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_find_cycle(w%object, t, found, y)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_find_cycle(w%object, t, found, y)
     period = found(1)
     call finish(w, stat, errmsg)
   end subroutine find_cycle
@@ -1373,9 +1363,7 @@ contains
     call expect_size(w, 'y', y, w%dimension)
     frequency = omega
     ratio = zeta
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_find_mode(w%object, c, amplitude, frequency, ratio, y)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_find_mode(w%object, c, amplitude, frequency, ratio, y)
     omega = frequency(1)
     zeta = ratio(1)
     call finish(w, stat, errmsg)
@@ -1437,9 +1425,7 @@ contains
     call find_driver(this, w)
     call expect_size(w, 're', re, w%dimension - 1)
     call expect_size(w, 'im', im, w%dimension - 1)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_get_multipliers(w%object, re, im)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_get_multipliers(w%object, re, im)
     call finish(w, stat, errmsg)
   end subroutine get_multipliers
 
@@ -1453,9 +1439,7 @@ contains
     integer(c_size_t) :: found
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_get_freedom(w%object, found)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_get_freedom(w%object, found)
     if (w%status == TRIBO_OK) freedom = int(found)
     call finish(w, stat, errmsg)
   end subroutine get_freedom
@@ -1473,9 +1457,7 @@ contains
 
     call find_driver(this, w)
     call expect_size(w, 'c', c, 2*w%ndof)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_extremes(w%object, c, low, high, at_low, at_high)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_period_extremes(w%object, c, low, high, at_low, at_high)
     if (w%status == TRIBO_OK) then
       least = low(1)
       most = high(1)
@@ -1499,9 +1481,7 @@ contains
     call find_driver(this, w)
     call expect_size(w, 'c', c, 2*w%ndof)
     call expect_count(w, 'k', k)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
     if (w%status == TRIBO_OK) then
       cosine = re(1)
       sine = im(1)
@@ -1519,9 +1499,7 @@ contains
 
     call find_driver(this, w)
     call expect_size(w, 'energy', energy, w%n)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_dissipation(w%object, energy)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_period_dissipation(w%object, energy)
     call finish(w, stat, errmsg)
   end subroutine period_dissipation
 
@@ -1535,9 +1513,7 @@ contains
 
     call find_driver(this, w)
     call expect_size(w, 'share', share, w%n)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_stick(w%object, share)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_period_stick(w%object, share)
     call finish(w, stat, errmsg)
   end subroutine period_stick
 
@@ -1639,9 +1615,7 @@ contains
     type(work) :: w
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_set_step(w%object, dt)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_set_step(w%object, dt)
     call finish(w, stat, errmsg)
   end subroutine set_step
 
@@ -1655,9 +1629,7 @@ contains
     type(work) :: w
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_set_tolerance(w%object, abstol, reltol)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_set_tolerance(w%object, abstol, reltol)
     call finish(w, stat, errmsg)
   end subroutine set_tolerance
 
@@ -1670,9 +1642,7 @@ contains
     type(work) :: w
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_set_output(w%object, dt)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_set_output(w%object, dt)
     call finish(w, stat, errmsg)
   end subroutine set_output
 
@@ -1686,9 +1656,7 @@ contains
     type(work) :: w
 
     call find_driver(this, w)
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_set_max_step(w%object, h)
-    end if
+    if (w%status == TRIBO_OK) w%status = c_driver_set_max_step(w%object, h)
     call finish(w, stat, errmsg)
   end subroutine set_max_step
 
