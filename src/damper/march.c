@@ -16,6 +16,7 @@ void dgelss_(const int *rows, const int *cols, const int *count, double *a, cons
 /* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
 enum { BLOCK = 16, KEEP = 8, BLOCKS = 60, QUIET = 5 };
 static const double TOLERANCE = 1e-6;
+static const double DRIFT = 0.01; /* of a mode that no stiffness holds: friction alone stops it, in many more periods */
 static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
 static const double COULOMB_STEPS = 1000;                /* a period in steps of 1 */
 
@@ -120,6 +121,17 @@ static double distance(const struct damper *d, const double *a, const double *b)
     return sqrt(sum);
 }
 
+/* The largest change between two states of a mode that no stiffness holds, beside velocities: the energy norm does not see it. */
+static double drift(const struct run *r, const double *a, const double *b)
+{
+    const double *omega = r->d->open.omega;
+    double most = 0.0;
+    for (size_t k = 0; k < r->d->modes && omega[k] <= 1e-6 * omega[r->d->modes - 1]; k++) {
+        most = fmax(most, r->omega * fabs(a[k] - b[k]));
+    }
+    return most;
+}
+
 /* Where the sequence of states y_0 ... y_keep+1 leads to, if each is a linear function of the one before, as it is close to a
  * steady motion: reduced rank extrapolation, s = y_0 - dY (d2Y)^+ dy_0 with first and second differences (Eddy 1979, Mesina
  * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
@@ -190,7 +202,8 @@ static struct motion settle_motion(const struct run *r, double *const *state)
         if (last > NOTHING * r->free.norm) {
             extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);
         }
-        steady = quiet(&r->free, m) && distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * size, NOTHING * r->free.norm);
+        steady = quiet(&r->free, m) && distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * size, NOTHING * r->free.norm) &&
+                 drift(r, state[BLOCK], state[BLOCK - 1]) < fmax(DRIFT * size, NOTHING * r->free.norm);
         /* contacts may begin or cease to stick on the way to where the extrapolation leads: then rather wait, longer each time */
         if (wait == 0 && last > 0.5 * change) {
             pause = 2 * pause + 1;

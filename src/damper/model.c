@@ -54,18 +54,25 @@ static double stuck_change(const struct model *m)
     return change;
 }
 
-double change_of(const struct point *p)
-{
-    return p->between ? 0.0 : fmax(p->amplitude, p->power);
-}
+/* The largest changes of points that count, and with all contacts stuck; error: the model error. */
+struct changes {
+    double amplitude, power, stuck, error;
+    size_t points;
+};
 
-double model_error(const struct model *m, const struct point *point, size_t count)
+static struct changes largest_changes(const struct model *m, const struct point *point, size_t count)
 {
-    double error = (double)NAN;
+    struct changes c = {.stuck = m->whole ? 0.0 : stuck_change(m)};
     for (size_t k = 0; k < count; k++) {
-        error = point[k].compared && !point[k].between ? fmax(error, MARGIN * change_of(&point[k])) : error;
+        if (point[k].compared && !point[k].between) {
+            c.amplitude = fmax(c.amplitude, point[k].amplitude);
+            c.power = fmax(c.power, point[k].power);
+            c.points++;
+        }
     }
-    return m->whole ? 0.0 : isnan(error) ? error : fmax(error, MARGIN * stuck_change(m));
+    const double error = MARGIN * fmax(fmax(c.amplitude, c.power), c.stuck);
+    c.error = m->whole ? 0.0 : c.points ? error : (double)NAN;
+    return c;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- choosing */
@@ -105,7 +112,7 @@ static double probe_error(const struct model *m)
         probe[k] = (struct point){.limit = limit_of(&o->limits, middle), .hz = hz};
     }
     compare_models(m, o->threads, probe, limits * bands);
-    return model_error(m, probe, limits * bands);
+    return largest_changes(m, probe, limits * bands).error;
 }
 
 static void check_drives(const struct damper *d)
@@ -193,34 +200,27 @@ const char *advice(const struct model *m, double error)
     return error <= MOST_ERROR ? "" : may_double(m) ? ": again with these" : ": take more --modes";
 }
 
-void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count)
+double report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count)
 {
-    const double error = model_error(m, point, count), stuck = m->whole ? 0.0 : stuck_change(m);
-    double amplitude = 0.0, power = 0.0;
-    size_t compared = 0;
-    for (size_t k = 0; k < count; k++) {
-        const int counts = point[k].compared && !point[k].between;
-        amplitude = counts ? fmax(amplitude, point[k].amplitude) : amplitude;
-        power = counts ? fmax(power, point[k].power) : power;
-        compared += (size_t)counts;
-    }
+    const struct changes c = largest_changes(m, point, count);
     if (m->whole) {
         printf("model error: none, since all modes are there\n");
-    } else if (compared == 0) {
+    } else if (c.points == 0) {
         printf("model error: not known, since no motion was found with %zu modes, too\n", m->finer.kept);
     } else {
         printf("model error: at most %.1e; with %zu modes amplitudes change by %.1e, powers by %.1e (at %zu point%s), all stuck "
                "by %.1e%s\n",
-               error, m->finer.kept, amplitude, power, compared, compared == 1 ? "" : "s", stuck, advice(m, error));
+               c.error, m->finer.kept, c.amplitude, c.power, c.points, c.points == 1 ? "" : "s", c.stuck, advice(m, c.error));
     }
-    for (size_t k = 0; !m->whole && compared > 0 && k < count; k++) {
+    for (size_t k = 0; !m->whole && c.points > 0 && k < count; k++) {
         const struct point *p = &point[k];
-        if (p->between && p->compared && fmax(p->amplitude, p->power) > error) {
+        if (p->between && p->compared && fmax(p->amplitude, p->power) > c.error) {
             printf("  more where contacts just begin to slip: at %.5g the amplitude changes by %.1e, the power by %.1e\n",
                    p->limit, p->amplitude, p->power);
         }
     }
-    if (!isnan(error)) {
-        write_result(t, "model.error", error);
+    if (!isnan(c.error)) {
+        write_result(t, "model.error", c.error);
     }
+    return c.error;
 }

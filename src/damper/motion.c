@@ -12,8 +12,7 @@
 static void open_driver(struct worker *w)
 {
     if (!w->d->marched) {
-        const int events = w->d->in_plane || w->d->rows > w->d->contacts;
-        need(tribo_driver_create(&w->drv, w->sys, events ? "auto" : "exact"), tribo_system_message(w->sys));
+        need(tribo_driver_create(&w->drv, w->sys, "auto"), tribo_system_message(w->sys));
     }
 }
 

@@ -19,7 +19,7 @@ struct worker {
     const struct damper *d;
     tribo_system *sys;
     double at;             /* value of --limits that sys is made for, with normal directions */
-    tribo_driver *drv;     /* "exact"; "auto" with normal directions or contacts in a plane; NULL with both in a contact */
+    tribo_driver *drv;     /* "auto"; NULL with a normal direction of a contact in a plane */
     tribo_driver *marcher; /* of driver_at; NULL: none */
     int march;             /* steady motions are found by marching */
     size_t dimension;

@@ -30,26 +30,21 @@ struct point {
     int between;               /* 1: at a limit that the user has not given; not in the model error */
 };
 
-/* The larger of both changes; 0 of a point between. */
-double change_of(const struct point *p);
-
 /* Finds the points with both numbers of modes, unless m is whole. */
 void compare_models(const struct model *m, size_t threads, struct point *point, size_t count);
 
 /* Error over change with twice the modes: up to 2.2 on beams and plates of 5 to 20 modes. */
 #define MARGIN 2.5
 
-/* Bounds the error: MARGIN times the largest change of the points, and of frequencies and amplitudes with all contacts stuck.
- * NaN if no point was compared. */
-double model_error(const struct model *m, const struct point *point, size_t count);
-
 /* Returns the end of a printed model error: ": again with these" if take_more_modes is to take the finer modes, ": take more
  * --modes" if only the user can, "" if `error` is small. */
 const char *advice(const struct model *m, double error);
 
-/* Writes frequencies, prints the number of modes and the bound of missing displacements; prints the model error. */
+/* Writes frequencies, prints the number of modes and the bound of missing displacements; prints the model error, which is
+ * returned: MARGIN times the largest change of the points, and of frequencies and amplitudes with all contacts stuck; NaN if no
+ * point was compared. */
 void report_model(const struct tables *t, const struct model *m);
-void report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count);
+double report_error(const struct tables *t, const struct model *m, const struct point *point, size_t count);
 
 /* A run. */
 struct study {

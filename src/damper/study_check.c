@@ -86,6 +86,12 @@ static void add_middle(struct points *p, const struct curve *c, size_t begin, si
     }
 }
 
+/* The larger of both changes; 0 of a point between. */
+static double change_of(const struct point *p)
+{
+    return p->between ? 0.0 : fmax(p->amplitude, p->power);
+}
+
 /* Adds samples on both sides of the point of the largest change: errors peak where a curve is steep, as where contacts just stick
  * for ever. */
 static void add_beside_worst(struct points *p)
@@ -131,11 +137,8 @@ double show_model_error(const struct study *s, const struct curve *c, size_t cur
         }
     }
     end_progress();
-    if (!interrupted()) {
-        report_error(s->tables, s->model, p.point, compared);
-    }
+    const double error = interrupted() ? (double)NAN : report_error(s->tables, s->model, p.point, compared);
     fflush(stdout);
-    const double error = model_error(s->model, p.point, compared);
     free(p.point);
     return error;
 }
