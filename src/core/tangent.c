@@ -153,10 +153,12 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
                           double *df_da)
 {
     const int status = tribo_balance(ctx, v, a, ctx ? ctx->last.feq : NULL, f);
+    if (!status || status == TRIBO_ERR_INCONSISTENT) {
+        tribo_copy(feq, ctx->last.feq, feq ? ctx->n : 0);
+    }
     if (status) {
         return status;
     }
-    tribo_copy(feq, ctx->last.feq, feq ? ctx->n : 0);
     const size_t n = ctx->n;
     const struct tangents *t = &ctx->last.tangent;
     const int own = tribo_is_own(ctx);

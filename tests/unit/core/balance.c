@@ -249,6 +249,9 @@ TEST(partition_redundant_outside)
     assert_all_close(x.feq, feq, 3, 8.0 * DBL_EPSILON);
     assert_all_close(x.f, feq, 3, 8.0 * DBL_EPSILON);
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_RANK), 2);
+    memset(x.feq, 0, sizeof x.feq);
+    assert_status(tribo_balance_tangent(c, p.v, p.a, x.feq, NULL, NULL, NULL), TRIBO_ERR_INCONSISTENT);
+    assert_all_close(x.feq, feq, 3, 8.0 * DBL_EPSILON);
     assert_ok(tribo_set_coupling(c, TRIBO_CONSISTENT));
     assert_ok(tribo_balance(c, p.v, p.a, x.feq, x.f));
     check_fixed_point(&p, TRIBO_QUINN, &x);
