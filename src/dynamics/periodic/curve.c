@@ -330,12 +330,8 @@ static double test_of(const struct track *c, const struct bracket *b, const stru
 /* to = from. Returns a status. */
 static int copy_knot(const struct track *c, struct knot *to, const struct knot *from)
 {
-    const size_t all = c->n + c->count;
-    memcpy(to->z, from->z, all * sizeof *to->z);
-    memcpy(to->tangent, from->tangent, all * sizeof *to->tangent);
-    memcpy(to->rate, from->rate, c->n * sizeof *to->rate);
-    memcpy(to->re, from->re, c->n * sizeof *to->re);
-    memcpy(to->im, from->im, c->n * sizeof *to->im);
+    const size_t each = (size_t)(c->knot[1].z - c->knot[0].z); /* values of a knot: its arrays, from z on */
+    memcpy(to->z, from->z, each * sizeof *to->z);
     to->trivial = from->trivial;
     to->outside = from->outside;
     int done = 1;
@@ -728,20 +724,20 @@ static int allocate(struct track *c)
     const tribo_system *sys = c->owner->map.sys;
     const size_t n = c->n, all = n + TRIBO_UNKNOWNS, values = tribo_system_dimension(sys) + n;
     struct knot *const k = c->knot;
+    const size_t each = 3 * all + 2 * values;
     double *memory;
-    if (!ALLOCATE(ARRAY(memory, 3 * (TRIBO_KNOTS + 1) * (all + values)), ARRAY(c->limit, sys->ncontact),
-                  ARRAY(c->put, sys->ncontact))) {
+    if (!ALLOCATE(ARRAY(memory, (TRIBO_KNOTS + 1) * each), ARRAY(c->limit, sys->ncontact), ARRAY(c->put, sys->ncontact))) {
         return tribo_error(c->owner->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a curve");
     }
     for (size_t i = 0; i < TRIBO_KNOTS; i++) {
-        k[i].z = memory + 3 * i * (all + values);
-        k[i].rate = k[i].z + all + values;
+        k[i].z = memory + i * each;
+        k[i].rate = k[i].z + all;
         k[i].tangent = k[i].rate + all;
         k[i].re = k[i].tangent + all;
         k[i].im = k[i].re + values;
     }
     c->memory = memory;
-    c->guess = memory + 3 * TRIBO_KNOTS * (all + values);
+    c->guess = memory + TRIBO_KNOTS * each;
     c->beyond = c->guess + all;
     c->shown = c->beyond + all;
     return TRIBO_OK;

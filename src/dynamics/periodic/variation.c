@@ -247,9 +247,6 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     struct stick_slip *m = &x->to->events->stick_slip;
     x->count = 0;
     x->clock += tau;
-    for (size_t k = 0; k < x->sys->normals.count; k++) {
-        x->pressed[k] = m->state.pressed[k];
-    }
     int status = x->status ? x->status : tribo_stick_slip_acceleration(m, x->sys, t, y, x->acceleration, x->force);
     tribo_stick_slip_contact_accelerations(x->sys, x->acceleration, 1, x->rate);
     tribo_elastic_move(m, x->sys, y);
@@ -271,7 +268,7 @@ int tribo_variation_phase(struct variation *x, double tau, double t, const doubl
     if (done) {
         memcpy(s->slip, m->state.slip, x->sys->ncontact);
         for (size_t k = 0; k < x->sys->normals.count; k++) {
-            s->slip[x->sys->ncontact + k] = (signed char)x->pressed[k];
+            s->slip[x->sys->ncontact + k] = (signed char)m->state.pressed[k];
         }
     }
     status = done && (s->phase || !motion->keep) ? TRIBO_OK : no_room(x->to);
@@ -418,12 +415,13 @@ static void carry_over_normals(struct variation *x)
     const struct normals *s = &x->sys->normals;
     const struct compliance *g = &x->sys->compliance;
     const size_t n = x->sys->ndof, all = tribo_system_energy(x->sys);
+    const signed char *pressed = x->before + x->sys->ncontact;
     size_t changes = 0;
     for (size_t k = 0; k < s->count; k++) {
-        changes += x->pressed[k] != now->pressed[k];
+        changes += pressed[k] != now->pressed[k];
     }
     for (size_t k = 0; g->count && k < s->count; k++) {
-        if (x->pressed[k] == now->pressed[k]) {
+        if (pressed[k] == now->pressed[k]) {
             continue;
         }
         for (size_t l = 0; now->rests[k] && l < g->count; l++) {
@@ -561,8 +559,7 @@ int tribo_variation_create(struct variation *x, tribo_system *sys, size_t column
     *x = (struct variation){.sys = sys};
     return ALLOCATE(ARRAY(x->v, all * columns), ARRAY(x->acceleration, n), ARRAY(x->force, c), ARRAY(x->rate, c),
                     ARRAY(x->spring_rate, c), ARRAY(x->row, c * all), ARRAY(x->a, c), ARRAY(x->f, c), ARRAY(x->change, all - n),
-                    ARRAY(x->delay, 2 * columns), ARRAY(x->pressed, c), ARRAY(x->contact, c), ARRAY(x->group, c),
-                    ARRAY(x->crossed, c)) != NULL;
+                    ARRAY(x->delay, 2 * columns), ARRAY(x->contact, c), ARRAY(x->group, c), ARRAY(x->crossed, c)) != NULL;
 }
 
 void tribo_variation_free(struct variation *x)

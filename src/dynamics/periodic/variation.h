@@ -73,12 +73,11 @@ struct variation {
     int status;                  /* of a failure in an event, its message on the system's context */
 
     /* at the end of a phase */
-    const signed char *before; /* [ncontact] slip in the phase, of `to` */
+    const signed char *before; /* [ncontact + normals] slip in the phase, then 1 for pressed normals, of `to` */
     double *acceleration;      /* [ndof] q'' */
     double *force;             /* [ncontact] friction forces */
     double *rate;              /* [ncontact] v' */
     double *spring_rate;       /* [ncontact] f' of elastic contacts */
-    unsigned char *pressed;    /* [normals] 1: pressed in the phase */
     size_t uncertain;          /* a contact in a plane that slides in a direction which is not known; ncontact: none */
 
     /* crossings, at most one a contact: of static limits, found before the decision, then of velocities */
