@@ -132,20 +132,6 @@ static double find_least(const struct stick_slip *m, struct creep *c)
 
 /* --------------------------------------------------------------------------------------------------------- directions */
 
-/* Rate of turn of the direction of contact k at the end of the last step. */
-static double find_turn(const struct event *e, size_t k)
-{
-    const struct line *l = &e->lines.line[k];
-    double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
-    for (size_t p = e->order + 1; p-- > 0;) {
-        dn = dn * e->length + un;
-        dt = dt * e->length + ut;
-        un = un * e->length + l->un[p];
-        ut = ut * e->length + l->ut[p];
-    }
-    return un * dt - ut * dn;
-}
-
 /* Returns the shortest time to a stop over the contacts with a direction that still turns too fast for an error of velocities
  * below e->error; HUGE_VAL if there is none. */
 static double find_settled(const struct event *e)
@@ -154,7 +140,15 @@ static double find_settled(const struct event *e)
     double length = HUGE_VAL;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const double turn = tribo_slides_in_plane(m, p) ? fabs(find_turn(e, k)) : 0.0;
+        const struct line *l = &e->lines.line[k];
+        double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0; /* u and its rate at the end of the last step */
+        for (size_t j = e->order + 1; tribo_slides_in_plane(m, p) && j-- > 0;) {
+            dn = dn * e->length + un;
+            dt = dt * e->length + ut;
+            un = un * e->length + l->un[j];
+            ut = ut * e->length + l->ut[j];
+        }
+        const double turn = fabs(un * dt - ut * dn);
         const int follows = turn <= TURNS * e->fastest || turn * p->stop <= lesser(MOST_STRAY, e->error / p->now);
         length = follows ? length : lesser(length, p->stop);
     }
@@ -395,14 +389,10 @@ static int creep_expand(struct event *e, double t, const double *y, double h, st
     }
     for (size_t k = 0, s = 0; s < c->count; k++) {
         if (tribo_slides_in_plane(m, &m->plane->contact[k])) {
-            /* guess: directions go on turning at their rate */
-            const double turn = find_turn(e, k) * h;
-            for (size_t i = 0; i < NODES; i++) {
-                c->angle[s * NODES + i] = fabs(turn) < 1.0 ? turn * node[i] : 0.0;
-            }
             c->slides[s++] = k;
         }
     }
+    memset(c->angle, 0, c->count * NODES * sizeof *c->angle);
     e->lines.given = h;
     int status = tribo_event_start(e, t, y);
     status = status ? status : find_response(e);

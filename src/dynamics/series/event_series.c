@@ -203,23 +203,6 @@ double tribo_series_reference(double least, double most)
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
 
-/* Terms x^(k) tau^k/k!, of one order k, of perturbations of the state; arrays are [...][columns]. Loads and bases do not
- * depend on the state. */
-struct perturbed {
-    size_t columns;
-    size_t rows;     /* orders in v: 1, or all that limits that fall need */
-    double *project; /* [ndof][ndof] projection onto accelerations that leave holding contacts at rest */
-    double *q, *u;   /* [ndof] */
-    double *next;    /* [ndof] workspace */
-    double *spring;  /* [ncontact] forces of compliant contacts */
-    double *force;   /* [ncontact] forces by limits that fall, or follow the motion */
-    double *v;       /* [rows][ncontact] velocities of contacts, the last orders cyclically */
-    struct turns turns;
-    const struct source *source;
-    double *drag; /* [ndof] workspace, one column: AC q' */
-    double power; /* tau^(k - 1) */
-};
-
 /* Most terms; a series of exponentials over a step has far less. */
 #define MOST_TERMS 400
 
@@ -246,7 +229,7 @@ static void add_source(struct event *e, size_t k, double part, const struct pert
 
 /* p->next += part times the terms of order k - 1 of accelerations by limits N that fall, from terms of v: dN/d|v| = (limit -
  * N)/velocity. */
-static void perturb_falling(const struct event *e, size_t k, double part, double tau, const struct perturbed *p)
+static void perturb_falling(const struct event *e, size_t k, double part, const struct perturbed *p)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t c = e->sys->ncontact, each = c * p->columns;
@@ -258,18 +241,18 @@ static void perturb_falling(const struct event *e, size_t k, double part, double
             const double slope = tribo_slides(m->state.slip[i]) ? (fall[i] - limit[i]) / m->limits.velocity[i] : 0.0;
             tribo_add(p->force + i * p->columns, power * slope, from + i * p->columns, p->columns);
         }
-        power *= tau;
+        power *= p->tau;
     }
     tribo_matrix_add_columns(&e->sys->response, part, p->columns, p->force, p->next);
 }
 
 /* Sets the terms of order k from those before. Returns a status. */
-static int find_term(struct event *e, size_t k, double tau, const struct perturbed *p)
+static int find_term(struct event *e, size_t k, const struct perturbed *p)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact, half = n * p->columns, each = c * p->columns;
-    const double part = tau / (double)k;
+    const double part = p->tau / (double)k;
     double *v = p->v + (k - 1) % p->rows * each;
     memset(p->next, 0, half * sizeof *p->next);
     tribo_matrix_add_columns(&sys->stiffness, -part, p->columns, p->q, p->next);
@@ -289,25 +272,25 @@ static int find_term(struct event *e, size_t k, double tau, const struct perturb
         }
     }
     if (m->limits.falls) {
-        perturb_falling(e, k, part, tau, p);
+        perturb_falling(e, k, part, p);
     }
     if (m->constant.pairs) {
-        tribo_pair_series_turn(e, k - 1, &p->turns);
+        tribo_pair_series_turn(e, k - 1, p);
     }
     add_source(e, k, part, p);
     if (m->plane) {
-        tribo_planar_series_turn(e, k - 1, &p->turns, p->force);
+        tribo_planar_series_turn(e, k - 1, p, p->force);
         tribo_matrix_add_columns(&sys->response, part, p->columns, p->force, p->next);
     }
     for (size_t i = 0; i < half; i++) {
         p->q[i] = part * p->u[i];
     }
     if (m->constant.pairs) {
-        tribo_pair_series_force(e, k, &p->turns, p->spring);
+        tribo_pair_series_force(e, k, p, p->spring);
     }
     memset(p->u, 0, half * sizeof *p->u);
     tribo_multiply_add(n, n, p->columns, 1.0, p->project, p->next, p->u);
-    return m->plane ? tribo_planar_series_turn_finish(e, k - 1, &p->turns, p->u) : TRIBO_OK;
+    return m->plane ? tribo_planar_series_turn_finish(e, k - 1, p, p->u) : TRIBO_OK;
 }
 
 /* Sets p->project. Returns a status. */
@@ -335,14 +318,12 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
     const size_t n = e->sys->ndof, half = n * columns, each = e->sys->ncontact * columns;
     const size_t lines = e->lines.count * columns;
     struct perturbed p = {
-        .columns = columns, .rows = m->limits.falls || lines ? e->order + 2 : 1, .source = source, .power = 1.0};
-    struct turns *t = &p.turns;
+        .columns = columns, .rows = m->limits.falls || lines ? e->order + 2 : 1, .tau = tau, .power = 1.0, .source = source};
     if (!ALLOCATE(ARRAY(p.project, n * n), ARRAY(p.q, half), ARRAY(p.u, half), ARRAY(p.next, half), ARRAY(p.spring, each),
-                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(t->z, p.rows * lines), ARRAY(t->g, p.rows * lines),
-                  ARRAY(t->w, lines), ARRAY(p.drag, n))) {
+                  ARRAY(p.force, each), ARRAY(p.v, p.rows * each), ARRAY(p.z, p.rows * lines), ARRAY(p.g, p.rows * lines),
+                  ARRAY(p.w, lines), ARRAY(p.drag, n))) {
         return tribo_error(e->sys->message, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
-    *t = (struct turns){columns, p.rows, tau, p.q, p.v, t->z, t->g, t->w};
     (void)phase;
     tribo_stick_slip_press(m, e->sys);
     int status = find_projection(e, &p);
@@ -353,7 +334,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         memcpy(p.spring + g->contact[k] * columns, v + 2 * half + k * columns, columns * sizeof *v);
     }
     if (m->constant.pairs) {
-        tribo_pair_series_force(e, 0, t, p.spring);
+        tribo_pair_series_force(e, 0, &p, p.spring);
     }
     for (size_t k = 0; k < g->count; k++) {
         memcpy(v + 2 * half + k * columns, p.spring + g->contact[k] * columns, columns * sizeof *v);
@@ -363,7 +344,7 @@ int tribo_event_transition(void *own, const void *phase, double tau, size_t colu
         most = e->lines.line[k].asymptotic ? e->order : most;
     }
     for (size_t k = 1, small = 0; !status && small < 2 && k < most; k++) {
-        status = find_term(e, k, tau, &p);
+        status = find_term(e, k, &p);
         tribo_add(v, 1.0, p.q, 2 * half); /* q and u */
         for (size_t i = 0; i < g->count; i++) {
             tribo_add(v + 2 * half + i * columns, 1.0, p.spring + g->contact[i] * columns, columns);

@@ -137,6 +137,16 @@ static inline double tribo_series_value(const double *x, size_t powers, double h
     return sum;
 }
 
+/* Returns the sum of the sizes of the terms of a series x at h, coefficients stride doubles apart. */
+static inline double tribo_series_size(const double *x, size_t stride, size_t powers, double h)
+{
+    double sum = 0.0;
+    for (size_t k = powers + 1; k-- > 0;) {
+        sum = sum * h + fabs(x[k * stride]);
+    }
+    return sum;
+}
+
 /* Returns h, shortened to a part of the radius of convergence of 1/x, x [powers + 1]; inverse [powers + 1]: workspace. */
 double tribo_series_within(const double *x, size_t powers, double *inverse, double h);
 
@@ -217,30 +227,39 @@ double tribo_planar_series_brake(const struct event *e, size_t k, double tau);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
-/* Terms x^(k) tau^k/k! of perturbations: q [ndof][columns] of displacements, of order k; v [rows][ncontact][columns] of
- * velocities of contacts, z and g [rows][lines][columns] of the turns of directions u and of limits that follow. v, z and g: of
- * the last orders, cyclically; rows > order + 1 of the series. */
-struct turns {
-    size_t columns, rows;
+/* Terms x^(k) tau^k/k! of perturbations of the state; arrays are [...][columns], those with rows of the last orders, cyclically,
+ * the others of one order k. Loads and bases do not depend on the state. */
+struct perturbed {
+    size_t columns;
+    size_t rows; /* 1; more than order + 1 of the series where forces turn, or limits fall */
     double tau;
-    const double *q;
-    double *v, *z, *g, *w; /* w [lines][columns]: workspace */
+    double power;    /* tau^(k - 1) */
+    double *project; /* [ndof][ndof] projection onto accelerations that leave holding contacts at rest */
+    double *q, *u;   /* [ndof] */
+    double *next;    /* [ndof] workspace */
+    double *spring;  /* [ncontact] forces of compliant contacts */
+    double *force;   /* [ncontact] forces by limits that fall, or follow the motion, and of planar contacts */
+    double *v;       /* [rows][ncontact] velocities of contacts */
+    double *z, *g;   /* [rows][lines] turns of directions u; limits that follow */
+    double *w;       /* [lines] workspace */
+    double *drag;    /* [ndof] workspace, one column: AC q' */
+    const struct source *source;
 };
 
 /* Rows of z and of g of order k, of contact c of e->lines. */
-static inline double *tribo_turn_of(const struct event *e, const struct turns *p, double *rows, size_t k, size_t c)
+static inline double *tribo_turn_of(const struct event *e, const struct perturbed *p, double *rows, size_t k, size_t c)
 {
     return rows + (k % p->rows * e->lines.count + c) * p->columns;
 }
 
 /* force [ncontact][columns] += terms of order k of the force of contact c by z and g. */
-void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct turns *p, double *force);
+void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct perturbed *p, double *force);
 
 /* Sets the k-th terms of turns, and force [ncontact][columns] = those of forces of sliding planar contacts; without the turns of
  * contacts that begin to slide, which finish finds: it adds their effect to the terms of order k + 1 of velocities
  * u [ndof][columns]. */
-void tribo_planar_series_turn(const struct event *e, size_t k, const struct turns *p, double *force);
-int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct turns *p, double *u);
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct perturbed *p, double *force);
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct perturbed *p, double *u);
 
 /* -------------------------------------------------------------------------------------------------------- pair_series.c */
 
@@ -254,8 +273,8 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
 /* turn: sets g of order k of all pairs, and, of pairs with slip TRIBO_SLIP_PLANE, z of order k + 1, or k if lag = 1, from terms
  * of order k of q and v. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs with
  * slip TRIBO_SLIP_PLANE; for k = 0 and lag = 0 first z, from the part of these rows across u. */
-void tribo_pair_series_turn(const struct event *e, size_t k, const struct turns *p);
-void tribo_pair_series_force(const struct event *e, size_t k, const struct turns *p, double *force);
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct perturbed *p);
+void tribo_pair_series_force(const struct event *e, size_t k, const struct perturbed *p, double *force);
 
 /* Returns h without such contacts, else at most `most`, shortened until forces follow velocities, and in a periodic motion until
  * series of perturbations converge, and do not cancel. */

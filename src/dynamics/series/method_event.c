@@ -331,24 +331,20 @@ static int method_event_create(tribo_driver *drv)
 }
 
 /* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion beside limits that fall with the speed. */
-static int check_following(const tribo_system *sys)
-{
-    const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;
-    return dropping == sys->ncontact
-               ? TRIBO_OK
-               : tribo_error(
-                     sys->message, TRIBO_ERR_UNSUPPORTED,
-                     "contact %zu has a limit that falls with the speed, which method event does not know beside limits that "
-                     "follow normal loads, as of contact %zu: take central/fixed or moreau/fixed",
-                     dropping, sys->normals.follower[0].contact);
-}
-
 static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
-    int status = check_following(e->sys);
+    const tribo_system *sys = e->sys;
+    const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;
     *events = &e->events;
-    status = status ? status : method_event_prepare(e);
+    const int status =
+        dropping == sys->ncontact
+            ? method_event_prepare(e)
+            : tribo_error(
+                  sys->message, TRIBO_ERR_UNSUPPORTED,
+                  "contact %zu has a limit that falls with the speed, which method event does not know beside limits that "
+                  "follow normal loads, as of contact %zu: take central/fixed or moreau/fixed",
+                  dropping, sys->normals.follower[0].contact);
     return tribo_driver_pass(drv, status);
 }
 

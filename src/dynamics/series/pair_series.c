@@ -136,39 +136,26 @@ void tribo_pair_series_guards(struct event *e)
     }
 }
 
-/* The sum of the sizes of the terms of a series x at h, its coefficients stride doubles apart. */
-static double pair_size(const double *x, size_t stride, size_t powers, double h)
-{
-    double sum = 0.0;
-    for (size_t k = powers + 1; k-- > 0;) {
-        sum = sum * h + fabs(x[k * stride]);
-    }
-    return sum;
-}
-
-/* The sum of the terms of a force by h, in units of that of its limit. */
-static double pair_reach(const struct event *e, const struct line *l, double h)
-{
-    const double *f = e->force + l->at, limit = pair_size(l->g, 1, e->order, h);
-    const size_t c = e->sys->ncontact;
-    return (pair_size(f, c, e->order, h) + pair_size(f + 1, c, e->order, h)) / limit;
-}
-
 /* The error of the velocity v by h, in parts of it, where a force that is not 0 is along v: it lags behind by c L A/|v|. 1/c is
  * at most fastest^2 times the mass. */
 static double pair_lag(const struct event *e, const struct line *l, double h)
 {
     const double c = tribo_spring_of(&e->events.stick_slip, l->at) / l->xn[0] * e->fastest;
     const double turn = hypot(tribo_series_value(l->un, e->order, h) - 1.0, tribo_series_value(l->ut, e->order, h));
-    return c * c * l->g[0] * pair_size(l->g, 1, e->order, h) * turn;
+    return c * c * l->g[0] * tribo_series_size(l->g, 1, e->order, h) * turn;
 }
 
 double tribo_pair_series_shorten(const struct event *e, double h, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
     h = e->lines.count ? lesser(h, most) : h;
     for (struct line *l = e->lines.line; l < e->lines.line + e->lines.count; l++) {
-        while (m->state.slip[l->at] == TRIBO_SLIP_STUCK && l->g[0] > 0.0 && h > 0.0 && !(pair_reach(e, l, h) <= BEYOND)) {
+        const double *f = e->force + l->at;
+        while (m->state.slip[l->at] == TRIBO_SLIP_STUCK && l->g[0] > 0.0 && h > 0.0 &&
+               !((tribo_series_size(f, c, e->order, h) + tribo_series_size(f + 1, c, e->order, h)) /
+                     tribo_series_size(l->g, 1, e->order, h) <=
+                 BEYOND)) {
             h *= 0.5;
         }
         if (m->state.slip[l->at] != TRIBO_SLIP_PLANE || l->fades) {
@@ -200,7 +187,7 @@ double tribo_pair_series_shorten(const struct event *e, double h, double most)
 /* With u turned by z, du = z across, and the limit L + dL,
  *     c L z' + c A dL = across'dv - v'u z,   df = -u dL - L across z. */
 
-void tribo_pair_series_turn(const struct event *e, size_t k, const struct turns *p)
+void tribo_pair_series_turn(const struct event *e, size_t k, const struct perturbed *p)
 {
     const size_t columns = p->columns, all = e->sys->ncontact * columns;
     for (size_t s = 0; s < e->lines.count; s++) {
@@ -232,7 +219,7 @@ void tribo_pair_series_turn(const struct event *e, size_t k, const struct turns 
     }
 }
 
-void tribo_pair_series_force(const struct event *e, size_t k, const struct turns *p, double *force)
+void tribo_pair_series_force(const struct event *e, size_t k, const struct perturbed *p, double *force)
 {
     const size_t columns = p->columns;
     for (size_t s = 0; s < e->lines.count; s++) {

@@ -85,7 +85,7 @@ void tribo_line_force(const struct line *l, size_t k, size_t from, size_t to, do
     }
 }
 
-void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct turns *p, double *force)
+void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct perturbed *p, double *force)
 {
     const struct line *l = &e->lines.line[c];
     double power = 1.0;
@@ -116,10 +116,7 @@ static int is_implicit(const struct stick_slip *m, const struct planar_contact *
 
 double tribo_planar_series_brake(const struct event *e, size_t k, double tau)
 {
-    double size = 0.0;
-    for (size_t j = tribo_event_limit_terms(e); j-- > 0;) {
-        size = size * tau + fabs(e->lines.line[k].g[j]);
-    }
+    const double size = tribo_series_size(e->lines.line[k].g, 1, tribo_event_limit_terms(e) - 1, tau);
     return e->events.stick_slip.plane->contact[k].brake * size;
 }
 
@@ -308,7 +305,7 @@ int tribo_planar_series_finish(struct event *e, size_t k)
  * by -weight g du, and grows by -weight u dg. */
 
 /* w [columns] += term k of r'(weight dv) of contact c, with coefficients of r from `from` on. */
-static void add_sideways(const struct event *e, size_t c, const struct turns *p, size_t k, size_t from, double *w)
+static void add_sideways(const struct event *e, size_t c, const struct perturbed *p, size_t k, size_t from, double *w)
 {
     const struct planar_contact *contact = &e->events.stick_slip.plane->contact[c];
     double power = pow(p->tau, (double)from);
@@ -322,7 +319,8 @@ static void add_sideways(const struct event *e, size_t c, const struct turns *p,
 }
 
 /* w [columns] += factor times term k of |x| z of contact c, with coefficients of |x| from `from` on. */
-static void add_turned(const struct event *e, size_t c, const struct turns *p, size_t k, size_t from, double factor, double *w)
+static void add_turned(const struct event *e, size_t c, const struct perturbed *p, size_t k, size_t from, double factor,
+                       double *w)
 {
     const struct planar_slip *plane = e->events.stick_slip.plane;
     for (size_t j = from; j <= k && j + (size_t)plane->contact[c].begins <= e->order; j++) {
@@ -331,7 +329,7 @@ static void add_turned(const struct event *e, size_t c, const struct turns *p, s
     }
 }
 
-void tribo_planar_series_turn(const struct event *e, size_t k, const struct turns *p, double *force)
+void tribo_planar_series_turn(const struct event *e, size_t k, const struct perturbed *p, double *force)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const struct planar_slip *plane = m->plane;
@@ -356,7 +354,7 @@ void tribo_planar_series_turn(const struct event *e, size_t k, const struct turn
     }
 }
 
-int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct turns *p, double *u)
+int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct perturbed *p, double *u)
 {
     const tribo_system *sys = e->sys;
     const struct planar_slip *plane = e->events.stick_slip.plane;
@@ -475,10 +473,7 @@ double tribo_planar_series_shorten(const struct event *e, double h)
         const double xn = tribo_series_value(l->xn, last, h), xt = tribo_series_value(l->xt, last, h), size = hypot(xn, xt);
         const double off =
             hypot(tribo_series_value(l->un, e->order, h) - xn / size, tribo_series_value(l->ut, e->order, h) - xt / size);
-        double sum = 0.0;
-        for (size_t k = last + 1; k-- > 0;) {
-            sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
-        }
+        const double sum = tribo_series_size(l->xn, 1, last, h) + tribo_series_size(l->xt, 1, last, h);
         h = e->events.sharp ? tribo_series_within(l->speed, last, l->square, h) : h;
         if ((e->events.sharp && !(off <= TRIBO_STRAIGHT)) ||
             !(off * tribo_planar_series_brake(e, c, h) * h / (double)(e->order + 1) <= m->plane->error[p->at] &&
