@@ -170,6 +170,31 @@ void tribo_balance_each(tribo_context *ctx, int plain, int wanted, const double 
               NULL);
 }
 
+int tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double inverse = *ctx->op->inverse;
+    const double alone = plain && ctx->follow.chunk->plain ? tribo_alone(*a, inverse) : tribo_alone_far(*a, inverse);
+    const double balance = *c->limit > 0.0 ? alone : 0.0;
+    const int own = tribo_is_own(ctx);
+    double force, box[BOX_ROWS];
+    if (!own) {
+        ctx->set.law->force(c, 1, v, &balance, &force);
+    } else if (!tribo_own_boxes(c, 1, 0, v, &balance, box, &force)) {
+        tribo_begin_call(ctx);
+        return tribo_own_fail(ctx, 0, v);
+    }
+    tribo_end_alone(ctx, ctx->set.law->holds);
+    if (own) {
+        *ctx->last.slip = tribo_own_slip(*v, force, *c->limit, box[LOWER], box[UPPER]);
+        ctx->last.slips = SLIPS_WRITTEN;
+    }
+    *ctx->last.f = force;
+    tribo_copy(feq, &balance, feq != NULL);
+    tribo_copy(f, &force, f != NULL);
+    return TRIBO_OK;
+}
+
 /* ----------------------------------------------------------------------------------------------------------------- step */
 
 static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, double *f)

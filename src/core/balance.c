@@ -210,6 +210,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status) {
         return status;
     }
+    if (ctx->n == 1 && tribo_all_alone(ctx)) {
+        return tribo_balance_one(ctx, plain, v, a, feq, f);
+    }
     status = balance_all(ctx, plain, feq != NULL, v, a);
     if (status && status != TRIBO_ERR_INCONSISTENT) {
         return status;

@@ -29,6 +29,17 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
 
+/* Ends a call in the place of tribo_begin_call and tribo_end_call, where tribo_all_alone. holds: see struct law. */
+static inline void tribo_end_alone(tribo_context *ctx, double holds)
+{
+    ctx->last.rank = 0;
+    ctx->last.residual = 0.0;
+    ctx->last.linearized = 0;
+    ctx->last.slips = SLIPS_IN_FORCES;
+    ctx->last.holds = holds;
+    ctx->count.skipped += ctx->op->islands;
+}
+
 /* ---- alone.c: contacts as if no two shared a body */
 
 /* Returns 1 if the law reads f_eq of a contact of chunk k at v [its size]; 0 for a law with f_eq: all slide with their limits. */
@@ -41,6 +52,9 @@ void tribo_slide(size_t n, const double *restrict v, const double *restrict limi
  * alone, or if wanted = 1 of all such contacts. Finds which contacts of groups are near stick, and lists their groups. plain:
  * |a_i| <= TRIBO_PLAIN. */
 void tribo_balance_each(tribo_context *ctx, int plain, int wanted, const double *v, const double *a);
+
+/* tribo_balance of one contact that is alone, after the checks: half the time of the balance of any number. Returns a status. */
+int tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 
 /* The first part of a step: last.f = -v/(dt R_ii) within bounds, and its copy f, unless f is NULL. */
 void tribo_step_each(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f);

@@ -28,7 +28,11 @@ static int ask(const struct contacts *c, size_t n, int derivatives, const double
     for (size_t i = 0; c->follows && i < n; i++) {
         to->room[i] = tribo_epsilon_of(c, i);
     }
-    fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
+    if (n == 1 && !derivatives) {
+        box[LOWER] = box[UPPER] = box[SHIFT] = HUGE_VAL;
+    } else {
+        fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
+    }
     return c->user->law(c->first, n, derivatives, v, to->limit, to->epsilon, box, c->user->data);
 }
 
@@ -50,26 +54,36 @@ static const char *flaw(const struct asked *s, size_t n, size_t i, int rows, con
                            : NULL;
 }
 
+/* Negative if |lower| or |upper| > limit, or |shift| > SHIFT_MOST, or one is NaN. Raises no floating-point exception. */
+static inline int64_t bounds_room(const double *limit, const double *lower, const double *upper, const double *shift)
+{
+    const double most = SHIFT_MOST;
+    const int64_t bound = tribo_size_of(limit), far = tribo_size_of(&most);
+    return (bound - tribo_size_of(lower)) | (bound - tribo_size_of(upper)) | (far - tribo_size_of(shift));
+}
+
+/* Positive if lower > upper, or lower < upper where |v| > epsilon. */
+static inline double order_excess(double v, double epsilon, double lower, double upper)
+{
+    const double wide = (fabs(v) > epsilon ? upper : lower) - lower;
+    return greater(lower - upper, wide);
+}
+
 /* f = clamp(feq - shift, lower, upper). Returns 1, or 0 if one of the boxes is none: before a comparison with NaN. */
 TRIBO_SIMD static int take_forces(size_t n, const double *restrict v, const double *restrict limit,
                                   const double *restrict epsilon, const double *restrict feq, const double *restrict box,
                                   double *restrict f)
 {
-    const double most = SHIFT_MOST;
-    const int64_t far = tribo_size_of(&most);
-    int64_t room = 0, bad = 0; /* as wide as a double, for vectors; room is negative if a number is too large */
+    int64_t room = 0, bad = 0; /* as wide as a double, for vectors */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        const int64_t bound = tribo_size_of(limit + i);
-        room |=
-            (bound - tribo_size_of(box + i)) | (bound - tribo_size_of(box + n + i)) | (far - tribo_size_of(box + SHIFT * n + i));
+        room |= bounds_room(limit + i, box + i, box + n + i, box + SHIFT * n + i);
     }
     if (room < 0) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
-        const double wide = (fabs(v[i]) > epsilon[i] ? box[n + i] : box[i]) - box[i];
-        bad |= greater(box[i] - box[n + i], wide) > 0.0 ? -1 : 0;
+        bad |= order_excess(v[i], epsilon[i], box[i], box[n + i]) > 0.0 ? -1 : 0;
         f[i] = clamp(feq[i] - box[SHIFT * n + i], box[i], box[n + i]);
     }
     return bad == 0;
@@ -79,8 +93,15 @@ int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const d
                     double *f)
 {
     struct asked s;
-    const int taken = !ask(c, n, derivatives, v, &s, box) && take_forces(n, v, s.limit, s.epsilon, feq, box, f),
-              good = taken && (!derivatives || tribo_all_within(box + BY_V_ROWS * n, BOX_ROWS * n, DBL_MAX));
+    int good = !ask(c, n, derivatives, v, &s, box);
+    if (good && n == 1) {
+        good = bounds_room(s.limit, box + LOWER, box + UPPER, box + SHIFT) >= 0 &&
+               !(order_excess(*v, *s.epsilon, box[LOWER], box[UPPER]) > 0.0);
+        *f = good ? clamp(*feq - box[SHIFT], box[LOWER], box[UPPER]) : HUGE_VAL;
+    } else if (good) {
+        good = take_forces(n, v, s.limit, s.epsilon, feq, box, f);
+    }
+    good = good && (!derivatives || tribo_all_within(box + BY_V_ROWS * n, BOX_ROWS * n, DBL_MAX));
     if (!good) {
         fill_box(n, f);
         fill_box(n * (derivatives ? ALL_ROWS : BOX_ROWS), box);
@@ -179,9 +200,7 @@ TRIBO_SIMD void tribo_own_slips(tribo_context *ctx, const double *v)
         n = tribo_chunk_size(ctx, at);
         TRIBO_APART
         for (size_t i = 0; i < n; i++) {
-            const double to = w[i] != 0.0 ? w[i] : -f[i], forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
-            const double under = f[i] < box[n + i] ? 0.0 : forth - back, slides = f[i] > box[i] ? under : forth - back;
-            slip[i] = (signed char)(int)(limit[i] > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as slip_by_force in queries.c */
+            slip[i] = tribo_own_slip(w[i], f[i], limit[i], box[i], box[n + i]);
         }
     }
     ctx->last.slips = SLIPS_WRITTEN;

@@ -32,6 +32,14 @@ static inline double tribo_own_at(const tribo_context *ctx, int row, size_t i)
     return tribo_own_box(ctx, i)[(size_t)row * tribo_chunk_size(ctx, i - k) + k];
 }
 
+/* The slip of a contact by its force f, within [lower, upper]. */
+static inline signed char tribo_own_slip(double v, double f, double limit, double lower, double upper)
+{
+    const double to = v != 0.0 ? v : -f, forth = to > 0.0 ? TRIBO_SLIP_FORTH : 0.0, back = to < 0.0 ? 1.0 : 0.0;
+    const double under = f < upper ? 0.0 : forth - back, slides = f > lower ? under : forth - back;
+    return (signed char)(int)(limit > 0.0 ? slides : TRIBO_SLIP_OPEN); /* as slip_by_force in queries.c */
+}
+
 /* 1 if tribo_own_boxes returned 0 for a chunk of f [ctx->n], or of derivatives by v or f_eq. */
 int tribo_own_failed(const tribo_context *ctx, const double *f);
 

@@ -147,23 +147,18 @@ static int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bo
     return status;
 }
 
-/* Ends a step with this status; returns it. */
-static int end_step(tribo_context *ctx, int status)
+/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known: see tribo_clusters_step. */
+static int solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
 {
+    tribo_begin_call(ctx);
     ctx->last.holds = 1.0;
+    int status = solve_boxes(ctx, dt, v, b, tribo_group_of(ctx));
+    status = status ? status : tribo_clusters_step(ctx, dt, v, known);
     if (!status) {
         tribo_end_call(ctx, tribo_islands(ctx));
         ctx->last.slips = SLIPS_IN_FORCES;
     }
     return status;
-}
-
-/* Finds last.f within bounds with v + dt R f = 0, or pushed against a bound; a status. known: see tribo_clusters_step. */
-static int solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known)
-{
-    tribo_begin_call(ctx);
-    const int status = solve_boxes(ctx, dt, v, b, tribo_group_of(ctx));
-    return status ? status : end_step(ctx, tribo_clusters_step(ctx, dt, v, known));
 }
 
 /* Over a step a contact comes in sliding if its speed exceeds this part of what friction can stop: more than rounding, and so
@@ -221,9 +216,9 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
 {
     int status = ctx ? step_check(ctx, dt, vfree, f) : TRIBO_ERR_NULL;
     if (!status && tribo_all_alone(ctx)) {
-        tribo_begin_call(ctx);
         tribo_step_each(ctx, dt, vfree, (struct bounds){NULL, ctx->follow.contacts.limit}, f);
-        return end_step(ctx, TRIBO_OK);
+        tribo_end_alone(ctx, 1.0);
+        return TRIBO_OK;
     }
     status = status ? status : step_at_end(ctx, dt, NULL, vfree);
     tribo_copy(f, status ? NULL : ctx->last.f, status ? 0 : ctx->n);

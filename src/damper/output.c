@@ -28,7 +28,9 @@ void die_if(int wrong, const char *format, ...)
 
 void need(int status, const char *detail)
 {
-    die_if(status, "%s%s%s", tribo_strerror(status), detail && *detail ? ": " : "", detail ? detail : "");
+    if (status) { /* the text is found for an error only: loops of measurements call this */
+        die("%s%s%s", tribo_strerror(status), detail && *detail ? ": " : "", detail ? detail : "");
+    }
 }
 
 void *need_memory(size_t count, size_t size)
