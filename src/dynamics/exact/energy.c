@@ -41,8 +41,8 @@ static double sampled_work(struct exact *x, const struct course *course, double 
     return half * work;
 }
 
-/* Sets *s = the output of course c over [0, tau]. Returns a bound of its size. */
-static double set_signal(const struct exact *x, const struct course *c, double tau, struct signal *s)
+/* Sets *s = the output of course c over [0, tau], and *fastest to at least |lambda| of its terms. Returns a bound of its size. */
+static double set_signal(const struct exact *x, const struct course *c, double tau, struct signal *s, double *fastest)
 {
     const struct forced *h = x->h;
     const size_t terms = h->modal->exponents + h->harmonics;
@@ -53,10 +53,14 @@ static double set_signal(const struct exact *x, const struct course *c, double t
     s->a[1] = c->ramp;
     s->a[2] = c->square;
     s->a[3] = c->cube;
+    while (s->degree > 0 && s->a[s->degree] == 0.0) {
+        s->degree--;
+    }
     for (size_t p = 0; p < terms; p++) {
         const double complex z = tribo_part(&x->z, p);
         if (c->output->size[p] > 0.0) {
             tribo_signal_add(s, (c->output->cr[p] + c->output->ci[p] * I) * z, h->lr[p] + h->li[p] * I);
+            *fastest = greater(*fastest, h->size[p]);
         }
         size += c->output->size[p] * (fabs(creal(z)) + fabs(cimag(z)));
     }
@@ -77,13 +81,15 @@ static inline double work_of(struct exact *x, const struct course *c, double tau
     if (!tribo_slides(slip)) {
         return 0.0;
     }
-    const double intervals = ceil(x->h->quickest * tau) + 1.0;
+    double fastest = 0.0;
+    const double steady = steady_part(x, i), velocity = set_signal(x, c, tau, &x->factor[0], &fastest);
+    const double limit = set_signal(x, part, tau, &x->factor[1], &fastest) + fabs(steady);
+    const double intervals = ceil(fastest * tau) + 1.0;
     if (!x->h->resonant && SAMPLES * intervals > (double)x->h->terms) {
-        const double steady = steady_part(x, i), velocity = set_signal(x, c, tau, &x->factor[0]);
-        const double limit = set_signal(x, part, tau, &x->factor[1]) + fabs(steady);
         x->factor[1].a[0] += steady;
         const double work = slip * tribo_signal_product(x->factor);
-        if (work >= CANCELS * tau * velocity * limit || SAMPLES * intervals > MOST_SAMPLES) {
+        const int many = SAMPLES * intervals > MOST_SAMPLES && !tribo_normals_follower(x->sys, i);
+        if (work >= CANCELS * tau * velocity * limit || many) {
             return mu * work;
         }
     }
