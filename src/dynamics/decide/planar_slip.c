@@ -71,12 +71,9 @@ static int create_plane(struct stick_slip *m, const tribo_system *sys)
         return TRIBO_ERR_MEMORY;
     }
     int status = tribo_clone(sys->contacts, &p->disc);
-    if (status) {
-        return status;
-    }
-    tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
-    tribo_set_law(p->disc, TRIBO_COULOMB);
-    status = tribo_system_find_pairs(sys, p->in_plane);
+    status = status ? status : tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
+    status = status ? status : tribo_set_law(p->disc, TRIBO_COULOMB);
+    status = status ? status : tribo_system_find_pairs(sys, p->in_plane);
     for (size_t i = 0; !status && i < c; i++) {
         /* directions of planar contacts stand in pairs; one without both limits is scalar, or open */
         const double *limit = m->state.limit + i, *r = m->constant.diagonal + i;

@@ -14,15 +14,9 @@
 /* Number of samples of an interval; largest number of samples where parts cancel. */
 enum { SAMPLES = 8, MOST_SAMPLES = 32768 };
 
-/* Returns the part of a limit that does not vary. */
-static double steady_part(const struct exact *x, size_t i)
-{
-    return tribo_normals_follower(x->sys, i) ? 0.0 : tribo_system_steady_limit(x->sys, i);
-}
-
-/* Returns the work of the contact by Gauss's rule with SAMPLES points in each interval. The caller chooses intervals in which no
- * term turns by more than 1 rad. Goes through the phase and back to tau. */
-static double sampled_work(struct exact *x, const struct course *course, double tau, size_t intervals)
+/* Returns the work of the contact by Gauss's rule with SAMPLES points in each interval; steady: the part of its limit that does
+ * not vary. The caller chooses intervals in which no term turns by more than 1 rad. Goes through the phase and back to tau. */
+static double sampled_work(struct exact *x, const struct course *course, double tau, double steady, size_t intervals)
 {
     static const double at[] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623},
                         weight[] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447, 0.10122853629037626};
@@ -34,7 +28,7 @@ static double sampled_work(struct exact *x, const struct course *course, double 
         const size_t point = k % SAMPLES;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / SAMPLES) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double limit = steady_part(x, i) + tribo_modal_motion_limit(x, i).g;
+        const double limit = steady + tribo_modal_motion_limit(x, i).g;
         work += weight[point / 2] * greater(limit, 0.0) * greater(x->events.stick_slip.state.slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
@@ -75,25 +69,24 @@ static inline double work_of(struct exact *x, const struct course *c, double tau
     const signed char slip = x->events.stick_slip.state.slip[i];
     double mu;
     const struct course *part = tribo_system_limits_vary(x->sys) ? tribo_modal_limit_course(x, i, &mu) : NULL;
-    if (!part || (!tribo_slides(slip) && !tribo_normals_follower(x->sys, i))) {
-        return -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
-    }
-    if (!tribo_slides(slip)) {
-        return 0.0;
+    const int follows = tribo_normals_follower(x->sys, i) != NULL;
+    if (!part || !tribo_slides(slip)) {
+        return follows ? 0.0 : -x->steady[i] * tribo_dot(c->output->on_rate, x->place, x->h->shapes);
     }
     double fastest = 0.0;
-    const double steady = steady_part(x, i), velocity = set_signal(x, c, tau, &x->factor[0], &fastest);
+    const double steady = follows ? 0.0 : tribo_system_steady_limit(x->sys, i),
+                 velocity = set_signal(x, c, tau, &x->factor[0], &fastest);
     const double limit = set_signal(x, part, tau, &x->factor[1], &fastest) + fabs(steady);
     const double intervals = ceil(fastest * tau) + 1.0;
     if (!x->h->resonant && SAMPLES * intervals > (double)x->h->terms) {
         x->factor[1].a[0] += steady;
         const double work = slip * tribo_signal_product(x->factor);
-        const int many = SAMPLES * intervals > MOST_SAMPLES && !tribo_normals_follower(x->sys, i);
+        const int many = SAMPLES * intervals > MOST_SAMPLES && !follows;
         if (work >= CANCELS * tau * velocity * limit || many) {
             return mu * work;
         }
     }
-    return sampled_work(x, c, tau, (size_t)intervals);
+    return sampled_work(x, c, tau, steady, (size_t)intervals);
 }
 
 double tribo_modal_motion_work(void *own, size_t i, double tau)
