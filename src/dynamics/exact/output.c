@@ -88,26 +88,6 @@ static size_t fill_output(const struct modal_build *b, size_t i, const double co
     return 1;
 }
 
-/* Sets *w = the part of the limit of contact i by harmonics; the part by a table is no term. Returns 1; 0 if out of memory. */
-static size_t fill_limit(const struct modal_build *b, size_t i, struct output *w)
-{
-    struct forced *f = b->forced;
-    double *c = tribo_modal_take(&f->store, 3 * f->terms + f->shapes, sizeof *c);
-    if (!c) {
-        return 0;
-    }
-    *w = (struct output){i, c, c + f->terms, c + 2 * f->terms, c + 3 * f->terms};
-    for (size_t s = 0, p = b->h->exponents; s < b->sys->loads.harmonics; s++, p++) {
-        const struct harmonic *part = &b->sys->loads.harmonic[s];
-        if (part->drives == DRIVES_LIMIT && !part->knots) {
-            w->cr[p] = part->cosine[i];
-            w->ci[p] = -part->sine[i];
-            w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
-        }
-    }
-    return 1;
-}
-
 /* Sets the outputs: of contacts that slide, where velocity, force or limit varies, of all normals, and of all limits that depend
  * on time. */
 int tribo_forced_outputs(struct modal_build *b)
@@ -136,8 +116,17 @@ int tribo_forced_outputs(struct modal_build *b)
         f->outputs += fill_output(b, sys->normals.normal[k].row, NULL, 1, &f->output[f->outputs]);
     }
     f->limits = f->outputs;
-    for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) {
-        f->outputs += fill_limit(b, i, &f->output[f->outputs]);
+    for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) { /* by harmonics; the part by a table is no term */
+        double *c = tribo_modal_take(&f->store, 3 * f->terms + f->shapes, sizeof *c);
+        for (size_t s = 0, p = h->exponents; c && s < sys->loads.harmonics; s++, p++) {
+            const struct harmonic *w = &sys->loads.harmonic[s];
+            if (w->drives == DRIVES_LIMIT && !w->knots) {
+                c[p] = w->cosine[i];
+                c[f->terms + p] = -w->sine[i];
+                c[2 * f->terms + p] = tribo_modal_magnitude(w->cosine[i], w->sine[i]);
+            }
+        }
+        f->output[f->outputs++] = (struct output){i, c, c + f->terms, c + 2 * f->terms, c + 3 * f->terms};
     }
     return !f->store.failed;
 }
