@@ -258,7 +258,7 @@ size_t tribo_constraints_rank(const struct matrix *direction, const struct matri
 {
     const size_t n = direction->rows;
     struct constraints c = {0};
-    size_t *all = tribo_zeros(n + n / sizeof *all + 1, sizeof *all);
+    size_t *all = calloc(n + n / sizeof *all + 1, sizeof *all);
     for (size_t i = 0; all && i < n; i++) {
         all[i] = i;
     }
