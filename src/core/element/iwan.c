@@ -40,15 +40,10 @@ static int turns(const double *state, double dx)
 /* Checks chi, and that the number of turns is whole and at most room, a further turn has room, and turns are finite; a status. */
 static int check_state(size_t n, size_t room, const double *dz, const double *parameter, const double *state)
 {
-    const uint64_t sign = (uint64_t)1 << 63, most = tribo_bits(DBL_MAX);
     for (size_t i = 0; i < n; i++, state += HEAD + 2 * room) {
         const double count = isfinite(state[1]) ? state[1] : -1.0;
         const size_t used = count >= 0.0 && count <= (double)room ? HEAD + 2 * (size_t)count : HEAD;
-        uint64_t beyond = 0; /* has the sign bit if an entry is not finite */
-        for (size_t k = 0; k < used; k++) {
-            beyond |= most - (tribo_bits(state[k]) & ~sign);
-        }
-        if (beyond & sign) {
+        if (!tribo_all_within(state, used, DBL_MAX)) {
             return TRIBO_ERR_NOT_FINITE;
         }
         const double chi = parameter[PARAMETERS * i + CHI];
