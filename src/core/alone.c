@@ -113,10 +113,6 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     const double *v = call->v + i;
     const int near = tribo_any_near(ctx, k, v), reads = near && alone;
     double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
-    if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
-        law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
-        return;
-    }
     const int finds = reads || (call->wanted && alone);
     if (finds) {
         find_feq(ctx, call, k, feq);
@@ -142,14 +138,19 @@ static void balance_chunk(tribo_context *ctx, const struct call *call, size_t k,
     }
 }
 
-/* Balances chunk k by the law of the caller; its box stays in tribo_own_box. */
+/* Balances chunk k by the law of the caller. Its box stays in tribo_own_box, but if tribo_all_alone, where it gives last.slip. */
 static void balance_own(tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
-    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room, *box = tribo_own_box(ctx, i);
+    const int alone = tribo_all_alone(ctx);
+    double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room, space[BOX_ROWS * TRIBO_CHUNK + TRIBO_LINE];
+    double *box = alone ? tribo_aligned(space) : tribo_own_box(ctx, i);
     find_feq(ctx, call, k, feq);
     tribo_own_boxes(&c, n, 0, call->v + i, feq, box, f);
+    if (alone) {
+        tribo_own_slips(ctx, i, call->v + i, box);
+    }
     for (size_t j = 0; ctx->op->groups && j < n; j++) {
         ctx->last.near[i + j] = box[j] < box[n + j];
         if (ctx->last.near[i + j]) {

@@ -218,10 +218,10 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return status;
     }
     tribo_end_call(ctx, tribo_islands(ctx));
-    ctx->last.slips = SLIPS_IN_FORCES;
+    ctx->last.slips = tribo_is_own(ctx) ? SLIPS_WRITTEN : SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
-    if (tribo_is_own(ctx)) {
-        tribo_own_slips(ctx, v);
+    for (size_t i = 0; tribo_is_own(ctx) && !tribo_all_alone(ctx) && i < ctx->n; i += TRIBO_CHUNK) {
+        tribo_own_slips(ctx, i, v + i, tribo_own_box(ctx, i));
     }
     /* f_eq of the contacts of groups that no solution has: all, or those that were not near stick; 0 for open ones. */
     for (size_t g = 0; feq && g < ctx->op->groups; g++) {

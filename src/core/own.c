@@ -192,18 +192,15 @@ const struct law tribo_law_own = {
 
 /* ------------------------------------------------------------------------------------------------------------- balances */
 
-TRIBO_SIMD void tribo_own_slips(tribo_context *ctx, const double *v)
+TRIBO_SIMD void tribo_own_slips(tribo_context *ctx, size_t at, const double *v, const double *box)
 {
-    for (size_t at = 0, n; at < ctx->n; at += n) {
-        const double *limit = ctx->follow.contacts.limit + at, *f = ctx->last.f + at, *box = tribo_own_box(ctx, at), *w = v + at;
-        signed char *slip = ctx->last.slip + at;
-        n = tribo_chunk_size(ctx, at);
-        TRIBO_APART
-        for (size_t i = 0; i < n; i++) {
-            slip[i] = tribo_own_slip(w[i], f[i], limit[i], box[i], box[n + i]);
-        }
+    const double *limit = ctx->follow.contacts.limit + at, *f = ctx->last.f + at;
+    const size_t n = tribo_chunk_size(ctx, at);
+    signed char *slip = ctx->last.slip + at;
+    TRIBO_APART
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = tribo_own_slip(v[i], f[i], limit[i], box[i], box[n + i]);
     }
-    ctx->last.slips = SLIPS_WRITTEN;
 }
 
 int tribo_own_failed(const tribo_context *ctx, const double *f)

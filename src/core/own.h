@@ -18,8 +18,8 @@ enum { LOWER, UPPER, SHIFT, BOX_ROWS, BY_V_ROWS = BOX_ROWS, BY_LIMIT_ROWS = 2 * 
 int tribo_own_boxes(const struct contacts *c, size_t n, int derivatives, const double *v, const double *feq, double *box,
                     double *f);
 
-/* Where balances keep the box [BOX_ROWS][n] of the chunk of contact i between their parts: in the place of the derivatives dv,
- * dfeq and dlimit, which are one array, and are found after the box. */
+/* Where balances keep, unless tribo_all_alone, the box [BOX_ROWS][n] of the chunk of contact i between their parts: in the place of
+ * the derivatives dv, dfeq and dlimit, which are one array, and are found after the box. */
 static inline double *tribo_own_box(const tribo_context *ctx, size_t i)
 {
     return ctx->last.tangent.dv + BOX_ROWS * (i - i % TRIBO_CHUNK);
@@ -46,8 +46,8 @@ int tribo_own_failed(const tribo_context *ctx, const double *f);
 /* The failure of the law at v [ctx->n], derivatives as in tribo_own_boxes; TRIBO_ERR_CALLBACK. */
 int tribo_own_fail(tribo_context *ctx, int derivatives, const double *v);
 
-/* last.slip of a balance at v, which has kept all boxes. */
-void tribo_own_slips(tribo_context *ctx, const double *v);
+/* last.slip of the chunk of contact i at v [n], from last.f and box [BOX_ROWS][n]. */
+void tribo_own_slips(tribo_context *ctx, size_t i, const double *v, const double *box);
 
 /* last.feq of contacts near stick = any f_eq for which the law is on the side of its box on which the balance left it. */
 void tribo_own_sides(tribo_context *ctx);

@@ -80,8 +80,6 @@ struct law {
     double holds;       /* a contact is stuck if |f| < holds limit */
     /* f [n]; v is finite, and |feq| <= TRIBO_FAR, also where the law does not use it */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
-    /* f [n] with feq = tribo_alone(a, inverse); |a| and 1/R_ii are at most TRIBO_PLAIN */
-    void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
 };
 
@@ -138,18 +136,13 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
 }
 
 /* The calls in the record of a law. */
-#define TRIBO_LAW_CALLS(name) .force = name##_force_all, .balance = name##_balance_all, .tangent = name##_tangent_all
+#define TRIBO_LAW_CALLS(name) .force = name##_force_all, .tangent = name##_tangent_all
 
-/* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
+/* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
  * <name>_tangent. */
 #define TRIBO_FORCE_EACH(name, limit, epsilon, slope, rate)                                                                      \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope);                                                                \
-    }
-
-#define TRIBO_BALANCE_EACH(name, limit, epsilon, slope, rate)                                                                    \
-    for (size_t i = 0; i < n; i++) {                                                                                             \
-        f[i] = name##_force(v[i], tribo_alone(a[i], inverse[i]), limit, epsilon, slope);                                         \
     }
 
 #define TRIBO_TANGENT_EACH(name, limit, epsilon, slope, rate)                                                                    \
@@ -178,11 +171,6 @@ static inline struct tangent dry_tangent(int slides, double v, double feq, doubl
                                             const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \
         TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name);                                                                                  \
-    }                                                                                                                            \
-    TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
-                                              const double *restrict a, const double *restrict inverse, double *restrict f)      \
-    {                                                                                                                            \
-        TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name);                                                                                \
     }                                                                                                                            \
     TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
                                              const double *restrict feq, double *restrict f, double *restrict dv,                \

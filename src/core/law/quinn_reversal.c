@@ -55,15 +55,6 @@ static void reversal_force_all(const struct contacts *c, size_t n, const double 
     }
 }
 
-static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse,
-                                 double *f)
-{
-    tribo_law_quinn.balance(c, n, v, a, inverse, f);
-    for (size_t i = 0; i < n; i++) {
-        cross(c, i, v[i], tribo_alone(a[i], inverse[i]), f + i, NULL);
-    }
-}
-
 static void reversal_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d)
 {
     tribo_law_quinn.tangent(c, n, v, feq, d);
