@@ -8,6 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Returns zeroed memory, or NULL; not NULL for count 0. Small blocks: malloc reuses memory just freed, calloc of the GNU C
+ * library does not. Large blocks: memory from the system is zero already, and calloc does not clear it again. */
+static inline void *tribo_zeros(size_t count, size_t size)
+{
+    enum { FRESH = 1024 };
+    const size_t small = count > FRESH / size ? 0 : count * size;
+    void *memory = count > FRESH / size ? calloc(count, size) : malloc(small + 1);
+    return memory ? memset(memory, 0, small) : NULL;
+}
+
 /* The alignment of arrays. */
 union layout_unit {
     double number;
@@ -49,7 +59,7 @@ static inline void *tribo_make_room(struct room *room, size_t bytes)
         return memset(room->block, 0, bytes);
     }
     free(room->block);
-    room->block = calloc(bytes, 1);
+    room->block = tribo_zeros(bytes, 1);
     room->size = room->block ? bytes : 0;
     return room->block;
 }

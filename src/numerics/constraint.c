@@ -178,6 +178,18 @@ static void eliminate_tie(struct elimination *e)
     }
 }
 
+/* Sets the entries of a tie of one row with one degree of freedom, as fill and eliminate_tie do. */
+static void invert_one(const struct elimination *e)
+{
+    struct tie *tie = e->tie;
+    const double entry = e->direction->val[e->direction->first[e->row[tie->order[0]]]];
+    tie->rank = entry != 0.0;
+    tie->entry[0] = entry;
+    if (tie->rank && tie->stride > 1) {
+        tie->entry[1] = 1.0 / entry;
+    }
+}
+
 /* Finds the ties, sets of rows and of degrees of freedom, which come behind all rows. Returns 1, or 0 if out of memory. */
 static int find_ties(struct elimination *e, struct constraints *c)
 {
@@ -241,8 +253,12 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
         e.tie->entry = entry;
         entry += e.tie->rows * e.tie->stride;
         e.zero = last ? sqrt(4.0 * (double)(e.tie->rows + 4) * DBL_EPSILON) : ROUNDING;
-        fill(&e);
-        eliminate_tie(&e);
+        if (e.tie->rows == 1 && e.tie->touched == 1) {
+            invert_one(&e);
+        } else {
+            fill(&e);
+            eliminate_tie(&e);
+        }
         c->rank += e.tie->rank;
     }
     size_t other = c->rank;
@@ -258,7 +274,7 @@ size_t tribo_constraints_rank(const struct matrix *direction, const struct matri
 {
     const size_t n = direction->rows;
     struct constraints c = {0};
-    size_t *all = calloc(n + n / sizeof *all + 1, sizeof *all);
+    size_t *all = tribo_zeros(n + n / sizeof *all + 1, sizeof *all);
     for (size_t i = 0; all && i < n; i++) {
         all[i] = i;
     }

@@ -26,22 +26,32 @@
 
 /* ------------------------------------------------------------------------------------------------------------------ memory */
 
+/* Units of a block, which holds several short arrays; a longer array has a block of its own. With its head a block has 1032
+ * bytes, the most that malloc of the GNU C library keeps at hand after free. */
+#define BLOCK ((size_t)126)
+
 struct modal_block {
     struct modal_block *next;
+    size_t used, room; /* units */
     union layout_unit unit[];
 };
 
 void *tribo_modal_take(struct modal_store *store, size_t count, size_t size)
 {
-    struct modal_block *block = malloc(sizeof *block + count * size);
-    if (!block) {
-        store->failed = 1;
-        return NULL;
+    struct modal_block *block = store->last;
+    const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit, room = units > BLOCK ? units : BLOCK;
+    if (!block || block->room - block->used < units) {
+        block = malloc(sizeof *block + room * sizeof *block->unit);
+        if (!block) {
+            store->failed = 1;
+            return NULL;
+        }
+        *block = (struct modal_block){store->last, 0, room};
+        store->last = block;
+        store->bytes += sizeof *block + room * sizeof *block->unit;
     }
-    block->next = store->last;
-    store->last = block;
-    store->bytes += sizeof *block + count * size;
-    return memset(block->unit, 0, count * size);
+    block->used += units;
+    return memset(block->unit + block->used - units, 0, units * sizeof *block->unit);
 }
 
 static void build_give_back(struct modal_store *store)

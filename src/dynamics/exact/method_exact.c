@@ -272,9 +272,9 @@ static int method_exact_create(tribo_driver *drv)
     if (unsupported) {
         return unsupported;
     }
-    struct exact *x = calloc(1, sizeof *x);
+    struct exact *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
-    if (!x || !(x->held.room = calloc(drv->sys->ncontact + sizeof(uint64_t), 1))) {
+    if (!x || !(x->held.room = tribo_zeros(drv->sys->ncontact + sizeof(uint64_t), 1))) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;

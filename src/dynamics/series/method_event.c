@@ -320,7 +320,7 @@ static const struct motion motion_in_series = {.begin = method_event_begin,
 static int method_event_create(tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
-    struct event *e = calloc(1, sizeof *e);
+    struct event *e = tribo_zeros(1, sizeof *e);
     drv->own = e;
     if (!e) {
         return tribo_error(sys->message, TRIBO_ERR_MEMORY, "out of memory for method event");

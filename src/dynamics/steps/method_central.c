@@ -59,7 +59,7 @@ static void central_destroy(tribo_driver *drv)
 
 static int central_create(tribo_driver *drv)
 {
-    struct central *x = calloc(1, sizeof *x);
+    struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
     if (!x || !tribo_step_form_create(&x->common, drv->sys) || !tribo_blockwise_create(&x->alone, drv->sys)) {
         return tribo_error(drv->sys->message, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);

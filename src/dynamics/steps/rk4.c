@@ -35,7 +35,7 @@ static void rk4_destroy(tribo_driver *drv)
 static int rk4_create(tribo_driver *drv)
 {
     const size_t n = drv->sys->ndof;
-    struct rk4 *r = calloc(1, sizeof *r);
+    struct rk4 *r = tribo_zeros(1, sizeof *r);
     drv->own = r;
     if (!r || !tribo_blockwise_create(&r->alone, drv->sys) ||
         !ALLOCATE(ARRAY(r->k, n), ARRAY(r->sum, n), ARRAY(r->stage[0], 2 * n), ARRAY(r->stage[1], 2 * n),

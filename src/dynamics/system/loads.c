@@ -403,7 +403,7 @@ static int append_harmonic(tribo_system *sys, struct harmonic h, const double *p
 static int take_harmonic(tribo_system *sys, struct harmonic h, const double *cosine, const double *sine)
 {
     const size_t n = length_of(sys, h.drives), c = sys->ncontact, before = sys->loads.harmonics;
-    double *parts = calloc(2 * n + 4 * c + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
+    double *parts = tribo_zeros(2 * n + 4 * c + 1, sizeof *parts), *way = parts ? parts + 2 * n : NULL;
     for (size_t part = 0; parts && part < 2; part++) {
         const double *from = part ? sine : cosine;
         if (from && h.drives != DRIVES_LOAD) {

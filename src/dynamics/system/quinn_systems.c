@@ -76,7 +76,7 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     tribo_model m = {.ndof = n, .ncontact = n};
     struct triplets t = {0};
     const double spring = (double)n;
-    double *mass = calloc(3 * n, sizeof *mass), *bound = mass + n, *load = bound + n;
+    double *mass = tribo_zeros(3 * n, sizeof *mass), *bound = mass + n, *load = bound + n;
     for (size_t i = 0; mass && i < n; i++) {
         for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
             tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);

@@ -113,7 +113,7 @@ struct disc_qp {
     struct disc *disc;                                /* [discs], at most 2 size */
     size_t discs;
     struct disc_factor factor;
-    struct room room; /* of all arrays */
+    struct room room; /* of all arrays; empty: the caller's */
 };
 
 /* Sizes of the largest problem. */
@@ -130,7 +130,7 @@ void tribo_disc_free(struct disc_qp *p);
 /* Takes over the sparse factor of a problem that was created alike; pattern: that of p in its place. */
 void tribo_disc_copy_factor(struct disc_qp *p, const struct disc_qp *from, struct sparse *pattern);
 
-/* The problem of one planar contact, which lies in store. */
+/* Room for the problem of one planar contact. */
 struct disc_alone {
     double store[176];
     struct disc_qp p;
