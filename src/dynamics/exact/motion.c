@@ -396,7 +396,7 @@ void tribo_modal_motion_bound(struct exact *x, double tau)
     for (size_t p = 0; p < h->modal->exponents; p++) {
         const double rate = h->lr[p], growth = rate == 0.0 ? 1.0 : exp(rate * (rate > 0.0 ? x->longest : tau));
         x->growth[p] = tribo_modal_magnitude(x->z.re[p], x->z.im[p]) * growth;
-        x->growth6[p] = h->sixth[p] * x->growth[p];
+        x->growth6[p] = lesser(h->sixth[p] * x->growth[p], DBL_MAX);
         for (size_t s = 0; h->resonant && s < h->harmonics; s++) {
             /* Resonant harmonics, Omega within RESONANCE of |lambda|. */
             const size_t at = s * h->modal->modes + h->modal->owner[p];

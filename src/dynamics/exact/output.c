@@ -2,6 +2,7 @@
 /* Outputs of a structure under loads: velocities and forces of contacts as sums of its terms. */
 #include "parts.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "common/real.h"
@@ -28,7 +29,8 @@ static int find_terms(struct modal_build *b)
     }
     for (size_t k = 0; k < f->terms; k++) {
         f->size[k] = tribo_modal_magnitude(f->lr[k], f->li[k]);
-        f->sixth[k] = f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k];
+        /* finite: times 0 it is 0 in outputs without this term */
+        f->sixth[k] = lesser(f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k] * f->size[k], DBL_MAX);
         f->quickest = greater(f->quickest, f->size[k]);
         f->decay = greater(f->decay, -f->lr[k]);
         f->growth = greater(f->growth, f->lr[k]);

@@ -88,7 +88,7 @@ static void find_sources(struct response *r)
         r->at_tau[q] = cexp(mu * r->tau);
         for (size_t k = first; k < end; k++) {
             const double complex unit = q >= e ? response[k] : h->owner ? 1.0 : h->rr[q * m + k] - h->ri[q * m + k] * I;
-            const double complex inertia = square * unit * z, damping = -(inertia + h->omega2[k] * unit * z);
+            const double complex motion = unit * z, inertia = square * motion, damping = -(square + h->omega2[k]) * motion;
             const size_t to = k * wide + q;
             r->cr[to + INERTIA * terms] = creal(inertia);
             r->ci[to + INERTIA * terms] = cimag(inertia);

@@ -305,8 +305,9 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
                           : tribo_normals_at(sys, i)                ? "is a normal direction, without friction"
                                                                     : NULL;
         if (why && x[i] != 0.0) {
-            status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED, "%s[%zu] = %g, but %s %zu %s", name, i, x[i],
-                                 load ? "degree of freedom" : "contact", i, why);
+            status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                                 load ? "%s[%zu] = %g, but degree of freedom %zu %s" : "%s[%zu] = %g, but contact %zu %s", name, i,
+                                 x[i], i, why);
         }
     }
     return status;
