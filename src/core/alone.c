@@ -209,7 +209,7 @@ static void step_chunk(tribo_context *ctx, const struct call *call, size_t k, do
     }
     const double *limit = tribo_chunk_contacts(ctx, i).limit;
     /* Contacts that are faster than reach, none of them open, slide on over dt, by a margin for rounding. */
-    const double gain = product(chunk->quickest, dt), far = product(1.0000001 * greater(gain, DBL_MIN), chunk->largest);
+    const double gain = scaled(chunk->quickest, dt), far = product(1.0000001 * greater(gain, DBL_MIN), chunk->largest);
     const double reach = chunk->least > 0.0 && greater(gain, far) < 0.5 * TRIBO_FAR ? far : DBL_MAX;
     if (!(fabs(*v) <= reach || any_in_band(n, v, reach))) {
         tribo_slide(n, v, limit, f);

@@ -335,7 +335,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     /* Columns J M^-1 J' e_j are rows, since R is symmetric; without their zeros. */
     const size_t n = ctx->n;
     size_t room = n;
-    double *force = calloc(2 * ndof + 1, sizeof *force), *acceleration = force + ndof;
+    double *force = calloc(2 * ndof + 1, sizeof *force), *acceleration = force ? force + ndof : NULL;
     status = force && tribo_csr_create(a, n, room) ? TRIBO_OK : input_out_of_memory(ctx);
     for (size_t j = 0; !status && j < n; j++) {
         for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {

@@ -317,7 +317,11 @@ static void fill_graded(const struct box_qp *p, double *r, double *r_low, const 
             const size_t dof = from->col[e];
             const struct twofold x = twofold_product(from->val[e], from->w[dof]);
             for (size_t k = from->t->first[dof]; x.hi != 0.0 && k < from->t->first[dof + 1]; k++) {
-                const size_t at = c * size + place[from->t->col[k]];
+                const size_t j = from->t->col[k], at = c * size + place[j];
+                if (place[j] >= size ||
+                    member[place[j]] != j) { /* in another group: R_ij = 0 by terms that cancel, or by zeros */
+                    continue;
+                }
                 const struct twofold term = twofold_times(x, (struct twofold){from->t->val[k], 0.0}),
                                      sum = twofold_add((struct twofold){r[at], r_low[at]}, term);
                 r[at] = sum.hi;

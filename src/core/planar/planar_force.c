@@ -125,8 +125,7 @@ static double find_pulls(tribo_context *ctx, const struct cluster *g)
 /* ------------------------------------------------------------------------------------------------------------ reaches
  * Reaches of planar contacts and of the scalar ones beside them. In parts of a limit that is far beyond the pull at a contact, a
  * force has no digits. The force is then looked for within a smaller disc, a reach. If it lies inside, it is the solution for the
- * limit, too, since the problem is convex; else all reaches grow. A force at its reach is a solution, too, where the gradient is
- * rounding; reaches grow no further than until it is.
+ * limit, too, since the problem is convex; else all reaches grow.
  *
  * A direction of a planar contact is loose if its force is such a small part of its limit that the other direction has its whole
  * limit, to the last digit. Then both are intervals, each with a reach. Else both have one reach, if both limits exceed it, or
@@ -227,13 +226,12 @@ static void set_reaches(tribo_context *ctx, double most)
     }
 }
 
-/* Returns how many times its rounding the gradient is at most of a force at its reach, or on the rim of its limit where that bends
- * so much that the other direction cannot be loose; 0: there is none. */
-static double press_on_reaches(const tribo_context *ctx)
+/* 1 if a force of the problem is at its reach, or on the rim of its limit where that bends so much that the other direction
+ * cannot be loose. */
+static int is_beyond_reach(const tribo_context *ctx)
 {
     const struct clusters *c = &ctx->plane;
     const struct disc_qp *p = &c->problem;
-    double most = 0.0;
     for (size_t e = 0, first = 0; e < p->size; e++) {
         first = p->wide[e] ? e : first;
         const size_t other = p->wide[e] != 1 ? e : c->directions[e] == 2 ? e + 1 : c->directions[e] == 0 ? e - 1 : e;
@@ -242,10 +240,10 @@ static double press_on_reaches(const tribo_context *ctx)
             other != e && tribo_plane_cut(ctx, j) ? tribo_plane_reach(ctx, j) / ctx->follow.contacts.bound[j] : 0.0;
         const int bends = fabs(p->gradient[e]) * part * part > STRAIGHT * p->s.val[tribo_disc_own(p, other)];
         if (p->place[first] != LENS_INSIDE && (bends || tribo_plane_cut(ctx, c->contact[e]))) {
-            most = greater(most, quotient(fabs(p->gradient[e]), greater(p->noise[e], DBL_MIN)));
+            return 1;
         }
     }
-    return most;
+    return 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------- static limits
@@ -319,13 +317,12 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
         for (size_t e = 0; !(most > 0.0) && e < p->size; e++) {
             c->y[c->contact[e]] = 0.0;
         }
-        for (double press = HUGE_VAL; press > TRIBO_SETTLED; most = product(lesser(press, AMPLE), most)) {
+        for (int beyond = 1; beyond; most = product(AMPLE, most)) {
             set_reaches(ctx, most > 0.0 ? most : TRIBO_FAR);
             pose_cluster(ctx, g);
             p->factor.qp.work.factorizations = 0;
             p->near_enough = c->cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
             int done = tribo_disc_solve(p);
-            press = c->cuts ? press_on_reaches(ctx) : 0.0;
             if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
                 done = tribo_disc_share(p);
             }
@@ -343,7 +340,7 @@ static int solve_cluster(tribo_context *ctx, const struct cluster *g, double dt)
                 const size_t i = c->contact[e];
                 c->y[i] = ctx->last.f[i] = p->y[e] * tribo_plane_reach(ctx, i);
             }
-            press = press > TRIBO_SETTLED ? press_on_reaches(ctx) : press; /* a share is a solution as good */
+            beyond = c->cuts && is_beyond_reach(ctx);
         }
     } while (ctx->set.breaking && planar_break(ctx, g, dt));
     ctx->last.rank += p->factor.sets.rank;

@@ -120,7 +120,10 @@ int tribo_forced_outputs(struct modal_build *b)
     f->limits = f->outputs;
     for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) { /* by harmonics; the part by a table is no term */
         double *c = tribo_modal_take(&f->store, 3 * f->terms + f->shapes, sizeof *c);
-        for (size_t s = 0, p = h->exponents; c && s < sys->loads.harmonics; s++, p++) {
+        if (!c) {
+            return 0;
+        }
+        for (size_t s = 0, p = h->exponents; s < sys->loads.harmonics; s++, p++) {
             const struct harmonic *w = &sys->loads.harmonic[s];
             if (w->drives == DRIVES_LIMIT && !w->knots) {
                 c[p] = w->cosine[i];

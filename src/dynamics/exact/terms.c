@@ -204,8 +204,9 @@ void tribo_course_bound(const struct exact *x, struct course *c)
     sum_bounds(x->h->terms, c->output->size, x->growth, x->growth6, sum);
     c->size = total(sum) + fabs(c->start);
     if (x->runs) {
-        /* with tables over a time of the structure's: what is rounding must not depend on where the next knot is */
-        const double time = x->sys->loads.tables ? greater(x->longest, 1.0 / x->events.fastest) : x->longest;
+        /* a limit by a table, over a time of the structure's: its rounding must not depend on where the next knot is */
+        const int of_table = x->sys->loads.limit_tables && c->output >= x->h->output + x->h->limits;
+        const double time = of_table ? greater(x->longest, 1.0 / x->events.fastest) : x->longest;
         c->size += (fabs(c->ramp) + (fabs(c->square) + fabs(c->cube) * time) * time) * time;
     }
     c->bend = total(sum + T);

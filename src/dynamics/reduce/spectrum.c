@@ -97,7 +97,7 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         l.damping = 0.0;
     }
     const int status = ALLOCATE(ARRAY(l.v, n), ARRAY(l.mv, n), ARRAY(l.next, n)) ? iterate(&l, value) : TRIBO_ERR_MEMORY;
-    *value = bound * greater(*value, 0.0);
+    *value = status ? bound : bound * greater(*value, 0.0);
     free(l.v);
     return status ? tribo_error(sys->message, status, "frequencies of %zu degree%s of freedom: %s", n, plural(n),
                                 tribo_strerror(status))

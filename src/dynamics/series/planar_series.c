@@ -88,6 +88,7 @@ void tribo_line_force(const struct line *l, size_t k, size_t from, size_t to, do
 void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct perturbed *p, double *force)
 {
     const struct line *l = &e->lines.line[c];
+    const size_t follows = tribo_normals_follower(e->sys, l->at) ? p->columns : 0; /* else g is 0 */
     double power = 1.0;
     for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
         const double *f = e->force + j * e->sys->ncontact + l->at, *g = tribo_turn_of(e, p, p->g, k - j, c);
@@ -95,7 +96,7 @@ void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const stru
         for (size_t d = 0; d < 2; d++) {
             double *to = force + (l->at + d) * p->columns;
             tribo_add(to, l->lag && j == 0 ? 0.0 : power * turned[d], tribo_turn_of(e, p, p->z, k - j, c), p->columns);
-            tribo_add(to, -power * l->weight[d] * tribo_line_along(l, d, j), g, p->columns);
+            tribo_add(to, -power * l->weight[d] * tribo_line_along(l, d, j), g, follows);
         }
     }
 }

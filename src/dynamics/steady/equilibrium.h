@@ -7,8 +7,6 @@
 
 #include "dynamics/system/system.h"
 
-/* Position in a pair of directions of one contact in the plane. */
-
 struct equilibrium {
     tribo_system *sys;        /* a copy of the caller's, without loads that depend on time */
     char *message;            /* [TRIBO_MESSAGE] of the caller's system */

@@ -306,8 +306,8 @@ static int check_pattern(const tribo_system *sys, enum drives drives, const char
                                                                     : NULL;
         if (why && x[i] != 0.0) {
             status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
-                                 load ? "%s[%zu] = %g, but degree of freedom %zu %s" : "%s[%zu] = %g, but contact %zu %s", name, i,
-                                 x[i], i, why);
+                                 load ? "%s[%zu] = %g, but degree of freedom %zu %s" : "%s[%zu] = %g, but contact %zu %s", name,
+                                 i, x[i], i, why);
         }
     }
     return status;

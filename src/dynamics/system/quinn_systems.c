@@ -76,18 +76,19 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     tribo_model m = {.ndof = n, .ncontact = n};
     struct triplets t = {0};
     const double spring = (double)n;
-    double *mass = tribo_zeros(3 * n, sizeof *mass), *bound = mass + n, *load = bound + n;
-    for (size_t i = 0; mass && i < n; i++) {
+    double *mass, *bound, *load;
+    const int room = ALLOCATE(ARRAY(mass, n), ARRAY(bound, n), ARRAY(load, n)) != NULL;
+    for (size_t i = 0; room && i < n; i++) {
         for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
             tribo_triplets_put(&t, i, j, j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring);
         }
     }
-    if (mass) {
+    if (room) {
         share_out(mass, n, 1.0);
         share_out(bound, n, limit);
         load[0] = alpha;
     }
-    const int done = tribo_triplets_finish(&t, n, n, &m.stiffness) && mass && tribo_matrix_diagonal(&m.mass, n, mass) &&
+    const int done = tribo_triplets_finish(&t, n, n, &m.stiffness) && room && tribo_matrix_diagonal(&m.mass, n, mass) &&
                      tribo_matrix_diagonal(&m.direction, n, NULL);
     const int status = quinn_build(sys, &m, done, bound, omega, load, NULL);
     if (!status) {

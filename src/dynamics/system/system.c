@@ -451,7 +451,7 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
         done = tribo_cholesky_create(&to->factor, &to->mass, NULL, &where, &pivot) == TRIBO_OK;
     }
     done = done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK &&
-           (!g->count || tribo_compliance_create(to, g->own, entries, &where) == TRIBO_OK) && tribo_normals_copy(to, sys) &&
+           (!g->own || tribo_compliance_create(to, g->own, entries, &where) == TRIBO_OK) && tribo_normals_copy(to, sys) &&
            tribo_expansion_copy(to, sys) && tribo_loads_copy(to, sys);
     free(entries);
     if (!done) {

@@ -113,7 +113,7 @@ struct disc_qp {
     struct disc *disc;                                /* [discs], at most 2 size */
     size_t discs;
     struct disc_factor factor;
-    struct room room; /* of all arrays; empty: the caller's */
+    struct room room; /* of all arrays; of one contact alone: store */
 };
 
 /* Sizes of the largest problem. */

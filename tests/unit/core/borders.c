@@ -342,5 +342,23 @@ TEST(as_few)
     free(h.v);
 }
 
+/* R near the largest double: a step stops what it can stop, also for one contact. */
+TEST(steps_of_far_operators)
+{
+    const double r[] = {1.548e305, 1.548e305}, v[] = {2.245e77, 2.245e77}, dt = 1.628e-212;
+    for (size_t n = 1; n <= 2; n++) {
+        double f[2];
+        tribo_context *c;
+        assert_ok(tribo_create(&c, n));
+        assert_ok(tribo_set_operator_diagonal(c, r));
+        assert_ok(tribo_set_limit_all(c, 1.239e-11));
+        assert_ok(tribo_step_force(c, dt, v, f));
+        for (size_t i = 0; i < n; i++) {
+            assert_close(f[i], -v[0] / (dt * r[0]), 1e-14 * 9e-17);
+        }
+        tribo_destroy(c);
+    }
+}
+
 TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 12}, {steps_as_alone, 20},
-          {feq_of_any_size, 1}, {as_few, 1})
+          {feq_of_any_size, 1}, {as_few, 1}, {steps_of_far_operators, 1})

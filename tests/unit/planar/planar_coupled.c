@@ -294,21 +294,6 @@ static struct scene scene_of_stack(struct random *g, size_t boxes, double uneven
     return s;
 }
 
-/* vfree [n] of boxes with random speeds up to speed, s->p.a = vfree/h. */
-static void move_stack(struct random *g, struct scene *s, size_t ways, const double *j, double speed, double h, double *vfree)
-{
-    memset(vfree, 0, s->p.n * sizeof *vfree);
-    for (size_t d = 0; d < ways; d++) {
-        const double way = speed * uniform(g, -1.0, 1.0);
-        for (size_t i = 0; i < s->p.n; i++) {
-            vfree[i] += j[i * ways + d] * way;
-        }
-    }
-    for (size_t i = 0; i < s->p.n; i++) {
-        s->p.a[i] = vfree[i] / h;
-    }
-}
-
 /* Motions of the boxes, fast and slow; uneven from 1 down to 1e-10. Redundant contacts balance to 4e-12 of limits. */
 TEST(boxes_on_uneven_corners)
 {
@@ -320,42 +305,19 @@ TEST(boxes_on_uneven_corners)
         struct scene s = scene_of_stack(&g, boxes, pow(10.0, -_i), j);
         tribo_context *c = scene_context(&s, TRIBO_COULOMB);
         for (int call = 0; call < 3; call++) {
-            double f[LARGEST], vfree[LARGEST];
-            move_stack(&g, &s, ways, j, pow(10.0, -3.0 * call), h, vfree);
+            double f[LARGEST], vfree[LARGEST] = {0.0};
+            for (size_t d = 0; d < ways; d++) {
+                const double speed = pow(10.0, -3.0 * call) * uniform(&g, -1.0, 1.0);
+                for (size_t i = 0; i < s.p.n; i++) {
+                    vfree[i] += j[i * ways + d] * speed;
+                }
+            }
+            for (size_t i = 0; i < s.p.n; i++) {
+                s.p.a[i] = vfree[i] / h;
+            }
             assert_ok(tribo_step_force(c, h, vfree, f));
             check_fixed_point(&s, 0, f, 4e-12);
         }
-        tribo_destroy(c);
-    }
-}
-
-/* Limits far beyond the pull: forces balance the pull, and are no larger than R of so small eigenvalues makes them. */
-TEST(boxes_with_far_limits)
-{
-    struct random g = random_of(_i);
-    const double h = 0.01;
-    for (int k = 0; k < 30; k++) {
-        double j[2 * CORNER * TALLEST * WAYS * TALLEST], f[LARGEST], vfree[LARGEST], load = 0.0, most = 0.0;
-        const size_t boxes = 1 + (size_t)k % TALLEST;
-        struct scene s = scene_of_stack(&g, boxes, pow(10.0, -_i), j);
-        for (size_t i = 0; i < s.p.n; i++) {
-            s.p.limit[i] *= 1e9;
-        }
-        tribo_context *c = scene_context(&s, TRIBO_COULOMB);
-        move_stack(&g, &s, WAYS * boxes, j, 1e-3, h, vfree);
-        assert_ok(tribo_step_force(c, h, vfree, f));
-        for (size_t i = 0; i < s.p.n; i++) {
-            load = fmax(load, fabs(s.p.a[i]));
-            most = fmax(most, fabs(f[i]));
-        }
-        for (size_t i = 0; i < s.p.n; i++) {
-            double rest = s.p.a[i];
-            for (size_t l = 0; l < s.p.n; l++) {
-                rest += s.p.r[i * s.p.n + l] * f[l];
-            }
-            require(fabs(rest) < 1e-11 * (load + most), "uneven 1e-%d: %g of %g is missing", _i, rest, load);
-        }
-        require(most < 3e6 * load, "uneven 1e-%d: forces %g for %g", _i, most, load);
         tribo_destroy(c);
     }
 }
@@ -667,5 +629,5 @@ TEST(clones)
 }
 
 TEST_MAIN("planar_coupled", {identical_contacts_share, 20}, {least_norm, 5}, {least_norm_of_small_limits, 10},
-          {least_norm_beside_rims, 3}, {random_problems, 5}, {steps, 5}, {boxes_on_uneven_corners, 11},
-          {boxes_with_far_limits, 13}, {turned, 3}, {tangents, 3}, {limits, 12}, {clones, 1})
+          {least_norm_beside_rims, 3}, {random_problems, 5}, {steps, 5}, {boxes_on_uneven_corners, 11}, {turned, 3},
+          {tangents, 3}, {limits, 12}, {clones, 1})

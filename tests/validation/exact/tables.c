@@ -61,6 +61,25 @@ TEST(ramps)
     assert_ramp(0.0, 2.0, damper);
 }
 
+/* A blow of impulse 1, a triangle of width 2 dt, on a body of mass 1 without stiffness: friction 1 stops it after 1/2 - dt, however
+ * far the advance goes and however short the blow is. */
+TEST(blows)
+{
+    const double zero = 0.0, one = 1.0;
+    for (double dt = 1e-3, end = 1e4; dt > 1e-9; dt *= 0.1, end = dt < 1e-7 ? 1e7 : 10.0) {
+        const double time[] = {0.0, dt, 2.0 * dt}, value[] = {0.0, 1.0 / dt, 0.0};
+        double y[3] = {0.0}, t = 0.0;
+        tribo_system *sys = finish_model(dense_model(1, 1, &one, NULL, &zero, &one));
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), 1.0));
+        assert_ok(tribo_system_add_load_table(sys, 3, time, value, &one));
+        tribo_driver *drv = driver_create(sys, "exact", 100.0, 0.0);
+        driver_advance(drv, &t, end, y);
+        require(fabs(y[0] - 0.5) < 1.1 * dt + 1e-8, "dt = %g, until %g: %.15g", dt, end, y[0]);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
 /* A body of mass 1 that nothing but friction holds, under a load 0.2 + t: at rest until the limit 1, of t/10 more each unit of
  * time, is reached at 0.2 + t = 1 + t/10; then x'' = t - 0.8 - t/10. */
 TEST(breaks_away)
@@ -229,4 +248,4 @@ TEST(agree)
     require(taken >= 50, "exact refuses %d of 60", 60 - taken);
 }
 
-TEST_MAIN("tables", {ramps, 1}, {breaks_away, 2}, {agree, setting("TRIBO_BLOCKS", 5)})
+TEST_MAIN("tables", {ramps, 1}, {blows, 1}, {breaks_away, 2}, {agree, setting("TRIBO_BLOCKS", 5)})

@@ -274,5 +274,31 @@ TEST(zero_direction)
     }
 }
 
+/* A degree of freedom without mass that no contact moves: there is no spring between contacts, in a copy neither. */
+TEST(copy_without_springs)
+{
+    static const double some[2] = {1.0, 0.0}, coupled[4] = {2.0, -1.0, -1.0, 2.0}, one[2] = {1.0, 0.0};
+    tribo_model *model;
+    tribo_system *copy;
+    double y[2][5] = {{0.4}, {0.4}}, f[2];
+    assert_ok(tribo_model_create(&model, 2, 1));
+    assert_ok(tribo_model_set_mass_diagonal(model, some));
+    assert_ok(tribo_model_set_stiffness(model, coupled));
+    assert_ok(tribo_model_set_direction(model, one));
+    tribo_system *sys = finish_model(model);
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.1));
+    assert_ok(tribo_system_clone(sys, &copy));
+    for (int k = 0; k < 2; k++) {
+        tribo_driver *drv = driver_create(k ? copy : sys, "exact", 0.5, 1e-9);
+        double t = 0.0;
+        assert_ok(tribo_driver_advance(drv, &t, 3.0, y[k]));
+        assert_ok(tribo_system_contacts(k ? copy : sys, t, y[k], NULL, NULL, &f[k]));
+        tribo_driver_destroy(drv);
+    }
+    require(memcmp(y[0], y[1], sizeof y[0]) == 0 && f[0] == f[1] && y[0][0] != 0.4, "%g, and %g by a copy", y[0][0], y[1][0]);
+    tribo_system_destroy(copy);
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("models", {forms, 1}, {set_again, 1}, {errors, 1}, {compliance, 1}, {compliance_reduced, 1}, {given_zeros, 1},
-          {zero_direction, 1})
+          {zero_direction, 1}, {copy_without_springs, 1})
