@@ -102,12 +102,19 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     return TRIBO_OK;
 }
 
+/* Returns kappa of contact i near stick, f = f_eq - kappa within its bounds: the shift by the law of the caller, or slope v. */
+static double shift_at(const tribo_context *ctx, const double *v, size_t i)
+{
+    const double slide = ctx->set.law->relaxes ? tribo_slope_of(&ctx->follow.contacts, i) * v[i] : 0.0;
+    return tribo_is_own(ctx) ? tribo_own_at(ctx, SHIFT, i) : slide;
+}
+
 /* Solves for the contacts of a group near stick, again while static limits break; a status.
  * f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii. */
 static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const int relaxes = ctx->set.law->relaxes, own = tribo_is_own(ctx);
+    const int own = tribo_is_own(ctx);
     int status;
     for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
         ctx->follow.now[p->member[p->near[e]]] = ctx->follow.hold[p->member[p->near[e]]];
@@ -115,9 +122,7 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     do {
         for (size_t e = 0; e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double limit = c->bound[i], kappa = own       ? tribo_own_at(ctx, SHIFT, i)
-                                                      : relaxes ? tribo_slope_of(c, i) * v[i]
-                                                                : 0.0;
+            const double limit = c->bound[i], kappa = shift_at(ctx, v, i);
             p->lo[k] = own           ? clamp(tribo_own_at(ctx, LOWER, i), -limit, limit)
                        : kappa < 0.0 ? lesser(limit, -limit - kappa)
                                      : -limit;
@@ -129,10 +134,9 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
         status = tribo_solve_group(ctx, p);
         for (size_t e = 0; !status && e < p->count; e++) {
             const size_t k = p->near[e], i = p->member[k];
-            const double kappa = own ? tribo_own_at(ctx, SHIFT, i) : relaxes ? tribo_slope_of(c, i) * v[i] : 0.0;
             /* The gradient of a free contact is rounding, of which a large group would gather too much. */
             const double beyond = p->at[k] == FREE ? 0.0 : quotient(p->gradient[k], ctx->op->diagonal[i]);
-            ctx->last.feq[i] = cut(p->x[k] + kappa - beyond);
+            ctx->last.feq[i] = cut(p->x[k] + shift_at(ctx, v, i) - beyond);
         }
     } while (!status && ctx->set.breaking && tribo_break_away(ctx, p, 0.0));
     return status;

@@ -48,12 +48,12 @@ int tribo_any_near(const tribo_context *ctx, size_t k, const double *v);
 /* f [n] of contacts that slide at v != 0. */
 void tribo_slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f);
 
-/* The first part of a balance: last.f of contacts that need no solver, and last.feq where the law reads it and a contact is not
- * alone, or if wanted = 1 of all such contacts. Finds which contacts of groups are near stick, and lists their groups. plain:
+/* The first part of a balance: last.f of contacts that need no solver, and last.feq of these contacts: of all if wanted = 1, else,
+ * unless tribo_all_alone, where the law reads f_eq. Finds which contacts of groups are near stick, and lists their groups. plain:
  * |a_i| <= TRIBO_PLAIN. */
 void tribo_balance_each(tribo_context *ctx, int plain, int wanted, const double *v, const double *a);
 
-/* tribo_balance of one contact that is alone, after the checks: half the time of the balance of any number. Returns a status. */
+/* tribo_balance after its checks, where n = 1 and tribo_all_alone: takes half the time that any n takes. Returns a status. */
 int tribo_balance_one(tribo_context *ctx, int plain, const double *v, const double *a, double *feq, double *f);
 
 /* The first part of a step: last.f = -v/(dt R_ii) within bounds, and its copy f, unless f is NULL. */

@@ -318,8 +318,8 @@ static void fill_graded(const struct box_qp *p, double *r, double *r_low, const 
             const struct twofold x = twofold_product(from->val[e], from->w[dof]);
             for (size_t k = from->t->first[dof]; x.hi != 0.0 && k < from->t->first[dof + 1]; k++) {
                 const size_t j = from->t->col[k], at = c * size + place[j];
-                if (place[j] >= size ||
-                    member[place[j]] != j) { /* in another group: R_ij = 0 by terms that cancel, or by zeros */
+                /* R_ij = 0 of a contact j in another group, though i and j share this body: terms cancel, or J has a 0 */
+                if (place[j] >= size || member[place[j]] != j) {
                     continue;
                 }
                 const struct twofold term = twofold_times(x, (struct twofold){from->t->val[k], 0.0}),

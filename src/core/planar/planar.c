@@ -298,12 +298,17 @@ static int fill_clusters(struct clusters *c, const struct parts *x, size_t n)
             g->redundant |= group != TRIBO_ALONE && op->group[group].nullity > 0;
             thin |= group != TRIBO_ALONE && op->group[group].thin;
         }
-        const int prefers = tribo_prefers_sparse(g->size, thin);
-        if (!fill_cluster(c, x, g) || (prefers && !g->made && !g->dense && !tribo_sparse_create(&g->made, &g->r))) {
+        const int sparse_pays = tribo_prefers_sparse(g->size, thin);
+        if (!fill_cluster(c, x, g)) {
             return 0;
         }
-        g->dense |= prefers && !g->made;
-        g->pattern = prefers ? g->made : NULL;
+        if (sparse_pays && !g->made && !g->dense) {
+            if (!tribo_sparse_create(&g->made, &g->r)) {
+                return 0;
+            }
+            g->dense = !g->made; /* the sparse factor would have too many entries */
+        }
+        g->pattern = sparse_pays ? g->made : NULL;
         const size_t sparse = g->pattern ? g->size : 0, dense = g->size - sparse;
         room.size = g->size > room.size ? g->size : room.size;
         room.dense = dense > room.dense ? dense : room.dense;

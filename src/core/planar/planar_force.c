@@ -106,8 +106,8 @@ static double pull_at(const tribo_context *ctx, const struct cluster *g, size_t 
     return sum;
 }
 
-/* pull = R f + a of the problem's directions, with the forces of all others. Returns what f_k sqrt(R_kk) of all forces is at most
- * if each balances its pull, or the force of another. */
+/* Sets pull = R f + a of the problem's directions, with the forces of all others. Returns an estimate of the largest
+ * f_k sqrt(R_kk), with f_k = |pull_k|/R_kk + |shift_k| limit_k, at most limit_k. */
 static double find_pulls(tribo_context *ctx, const struct cluster *g)
 {
     const struct clusters *c = &ctx->plane;
@@ -116,8 +116,8 @@ static double find_pulls(tribo_context *ctx, const struct cluster *g)
     for (size_t e = 0; e < c->problem.size; e++) {
         const size_t i = c->contact[e];
         c->pull[e] = pull_at(ctx, g, c->near[e], 0, 0, 1);
-        const double ask = lesser(quotient(fabs(c->pull[e]), r[i]) + product(fabs(c->shift[e]), bound[i]), bound[i]);
-        most = greater(most, product(ask, sqrt(r[i])));
+        const double force = lesser(quotient(fabs(c->pull[e]), r[i]) + product(fabs(c->shift[e]), bound[i]), bound[i]);
+        most = greater(most, product(force, sqrt(r[i])));
     }
     return most;
 }

@@ -81,7 +81,8 @@ struct output {
     size_t contact;
     double *cr, *ci, *size; /* [terms] c_p, |c_p| */
     const double
-        *on_rate; /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta''; limit: 0 */
+        *on_rate; /* [shapes] held, normal: per eta, ramp per eta'; sliding: velocity per eta', ramp per eta''; of a limit
+                              NULL */
 };
 
 /* Forcing of the modes: a harmonic or table of the system; or a harmonic or table of the limit of one contact that does not hold,

@@ -157,10 +157,10 @@ static void move_shapes(struct exact *x, int brief)
     }
     for (size_t p = 0; p < e + h->harmonics; p++) {
         const double complex lambda = h->lr[p] + h->li[p] * I;
-        double complex move = tribo_now(x, p, 0) - tribo_part(&x->z, p);
-        if (p >= e && h->size[p] == 0.0) { /* constant */
+        if (p >= e && h->size[p] == 0.0) { /* z_p is constant */
             continue;
         }
+        double complex move = tribo_now(x, p, 0) - tribo_part(&x->z, p);
         if (x->tau * h->size[p] < LITTLE && !(h->resonant && p < e)) {
             /* With a load far above the frequency of exponent p, or in a short slip under a limit far above all other forces,
              * this small change of z is the whole motion: a difference would lose digits. */

@@ -119,7 +119,7 @@ int tribo_forced_outputs(struct modal_build *b)
     }
     f->limits = f->outputs;
     for (size_t i = 0; sys->loads.limits && i < sys->ncontact; i++) { /* by harmonics; the part by a table is no term */
-        double *c = tribo_modal_take(&f->store, 3 * f->terms + f->shapes, sizeof *c);
+        double *c = tribo_modal_take(&f->store, 3 * f->terms, sizeof *c);
         if (!c) {
             return 0;
         }
@@ -131,7 +131,7 @@ int tribo_forced_outputs(struct modal_build *b)
                 c[2 * f->terms + p] = tribo_modal_magnitude(w->cosine[i], w->sine[i]);
             }
         }
-        f->output[f->outputs++] = (struct output){i, c, c + f->terms, c + 2 * f->terms, c + 3 * f->terms};
+        f->output[f->outputs++] = (struct output){i, c, c + f->terms, c + 2 * f->terms, NULL};
     }
     return !f->store.failed;
 }

@@ -92,8 +92,10 @@ static void find_sources(struct response *r)
             const size_t to = k * wide + q;
             r->cr[to + INERTIA * terms] = creal(inertia);
             r->ci[to + INERTIA * terms] = cimag(inertia);
-            r->cr[to + DAMPING * terms] = creal(damping);
-            r->ci[to + DAMPING * terms] = cimag(damping);
+            if (q < e) { /* C~ eta' = -eta'' - omega^2 eta in a free motion */
+                r->cr[to + DAMPING * terms] = creal(damping);
+                r->ci[to + DAMPING * terms] = cimag(damping);
+            }
         }
         for (int part = 0; q >= e && part < 2; part++) {
             for (size_t k = 0; k < f->shapes; k++) {

@@ -220,11 +220,11 @@ void tribo_course_begin(struct exact *x, size_t o, double value)
     c->output = w;
     c->start = 0.0;
     c->ramp = c->square = c->cube = 0.0;
-    if (x->runs) {
+    if (x->runs && w->on_rate) {
         c->ramp = tribo_dot(w->on_rate, of_velocity ? x->acc : of_normal ? x->drift : x->vel, x->h->shapes);
         c->square = of_normal ? 0.5 * tribo_dot(w->on_rate, x->acc, x->h->shapes) : 0.0;
     }
-    if (x->sys->loads.tables) {
+    if (x->sys->loads.tables && w->on_rate) {
         const double jerk = tribo_dot(w->on_rate, x->jerk, x->h->shapes);
         const double *by_u = !of_velocity && !of_normal && x->h->by_u ? x->h->by_u + w->contact * x->h->shapes : NULL;
         c->ramp += by_u ? tribo_dot(by_u, x->acc, x->h->shapes) : 0.0;

@@ -184,47 +184,49 @@ TEST(too_far_apart)
     tribo_destroy(p.c);
 }
 
-/* Two contacts of a light body with heavy ones; terms with a contact of another group, a chain, cancel, or J has a 0 there. The
- * chain's numbers are no entries of the pair (sanitizers see writes behind it). */
+/* Appends entry x in column body to the last row. */
+static void put(size_t *entries, size_t *col, double *val, size_t body, double x)
+{
+    col[*entries] = body;
+    val[(*entries)++] = x;
+}
+
+/* A chain, and two contacts k of a light body with two heavy ones: v_k = u_light + (1 + k)(u_heavy - u_other). R of the chain's last
+ * contact with these is 0: terms by the heavy bodies cancel, or J has a 0 at the light one. Numbers of the chain are no entries of
+ * the pair's matrix (sanitizers see writes behind it). */
 TEST(beside_another_group)
 {
-    enum { CHAIN = 5, N = CHAIN + 2, LIGHT = CHAIN + 1, BODIES = CHAIN + 4 };
-    const double inverse[BODIES] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1e6, 1.0, 1.0};
+    enum { CHAIN = 5, N = CHAIN + 2, LIGHT = CHAIN + 1, HEAVY, OTHER, BODIES };
+    const double inverse[BODIES] = {
+        [0] = 1.0, [1] = 1.0, [2] = 1.0, [3] = 1.0, [4] = 1.0, [5] = 1.0, [LIGHT] = 1e6, [HEAVY] = 1.0, [OTHER] = 1.0};
     for (int zero = 0; zero < 2; zero++) {
-        size_t rowptr[N + 1] = {0}, col[4 * N], e = 0;
-        double val[4 * N], v[N] = {0.0}, a[N] = {0.0}, f[N], r[2][2] = {{0.0}};
-        for (size_t i = 0; i < N; i++) {
-            const size_t k = i - CHAIN, two[] = {i < CHAIN ? i : LIGHT, i < CHAIN ? i + 1 : LIGHT + 1};
-            for (size_t b = 0; b < 2; b++) {
-                col[e] = two[b];
-                val[e++] = i < CHAIN ? 1.0 - 2.0 * (double)b : b == 0 ? 1.0 : 1.0 + (double)k;
+        size_t rowptr[N + 1] = {0}, col[4 * N], entries = 0;
+        double val[4 * N], v[N] = {0.0}, a[N] = {[CHAIN] = 100.0, [CHAIN + 1] = 101.0}, f[N];
+        for (size_t i = 0; i < CHAIN; i++) {
+            put(&entries, col, val, i, 1.0);
+            put(&entries, col, val, i + 1, -1.0);
+            if (i + 1 == CHAIN) {
+                put(&entries, col, val, zero ? LIGHT : HEAVY, zero ? 0.0 : 1.0);
+                put(&entries, col, val, OTHER, zero ? 0.0 : 1.0);
             }
-            if (i >= CHAIN || (i == CHAIN - 1 && !zero)) {
-                col[e] = LIGHT + 2;
-                val[e++] = i < CHAIN ? 1.0 : -1.0 - (double)k;
-            }
-            if (i == CHAIN - 1) {
-                col[e] = zero ? LIGHT : LIGHT + 1;
-                val[e++] = zero ? 0.0 : 1.0;
-            }
-            rowptr[i + 1] = e;
+            rowptr[i + 1] = entries;
         }
-        for (size_t p = 0; p < 2; p++) {
-            for (size_t q = 0; q < 2; q++) {
-                r[p][q] = 1e6 + 2.0 * (1.0 + (double)p) * (1.0 + (double)q);
-            }
+        for (size_t k = 0; k < 2; k++) {
+            put(&entries, col, val, LIGHT, 1.0);
+            put(&entries, col, val, HEAVY, 1.0 + (double)k);
+            put(&entries, col, val, OTHER, -1.0 - (double)k);
+            rowptr[CHAIN + k + 1] = entries;
         }
-        a[CHAIN] = 100.0;
-        a[CHAIN + 1] = 101.0;
         tribo_context *c;
         assert_ok(tribo_create(&c, N));
         assert_ok(tribo_set_operator_mass(c, BODIES, inverse, rowptr, col, val));
         assert_ok(tribo_set_law(c, TRIBO_COULOMB));
         assert_ok(tribo_set_limit_all(c, 1e3));
         assert_ok(tribo_balance(c, v, a, NULL, f));
-        for (size_t p = 0; p < 2; p++) {
-            const double rest = r[p][0] * f[CHAIN] + r[p][1] * f[CHAIN + 1] + a[CHAIN + p];
-            require(fabs(rest) < 1e-12 * 1e6 * 1e2, "%d, contact %zu: %g is missing", zero, CHAIN + p, rest);
+        for (size_t k = 0; k < 2; k++) {
+            const double apart = f[CHAIN] + 2.0 * f[CHAIN + 1]; /* force on the heavy bodies */
+            const double rest = 1e6 * (f[CHAIN] + f[CHAIN + 1]) + 2.0 * (1.0 + (double)k) * apart + a[CHAIN + k];
+            require(fabs(rest) < 1e-12 * 1e6 * 1e2, "%d, contact %zu: %g is missing", zero, CHAIN + k, rest);
         }
         tribo_destroy(c);
     }
