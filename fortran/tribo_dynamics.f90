@@ -1517,7 +1517,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine period_stick
 
-  !> contact = index, counted from 0, of parameters kind; checks those of limits.
+  !> contact = index - 1, as C counts contacts; refuses an index of TRIBO_PARAMETER_LIMIT that is not in 1 to w%n.
   subroutine to_contacts(w, kind, index, contact)
     type(work), intent(inout) :: w
     integer, intent(in) :: kind(:), index(:)

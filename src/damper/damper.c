@@ -200,7 +200,7 @@ static void check_spring(const struct damper *d, size_t c)
     for (size_t k = 0; k < d->modes; k++) {
         const double shape = d->contact_shape[c * d->modes + k];
         spring += stiffness * shape * shape;
-        lowest = d->open.omega[k] > 1e-6 * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
+        lowest = d->open.omega[k] > LOOSE * d->open.omega[d->modes - 1] ? fmin(lowest, d->open.omega[k]) : lowest;
     }
     die_if(!(spring <= MOST_STIFF * lowest * lowest), "%s: stiffness=%g is more than %g times that of the structure there%s",
            d->contact[c].at.origin, stiffness, MOST_STIFF,
@@ -251,8 +251,7 @@ tribo_system *create_system(const struct damper *d, double limit)
             need(tribo_model_set_normal(model, c, row++, contact->mu, to->stiffness, gap), tribo_model_message(model));
         }
     }
-    const int status = tribo_system_create(&sys, model);
-    die_if(status, "modes and springs: %s", tribo_model_message(model));
+    die_if(tribo_system_create(&sys, model), "modes and springs: %s", tribo_model_message(model));
     tribo_context *context = tribo_system_context(sys);
     need(tribo_set_law(context, d->law), tribo_message(context));
     need(tribo_set_planar(context, planar, first), tribo_message(context));
@@ -326,7 +325,7 @@ void free_damper(struct damper *d)
 void check_drive(const struct damper *d, double hz)
 {
     const double highest = d->open.omega[d->modes - 1];
-    die_if(!(TURN * hz > 1e-6 * highest),
+    die_if(!(TURN * hz > LOOSE * highest),
            "the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept; see --drive", hz,
            highest / TURN);
     const struct scale s = scale_of(&d->open, TURN * hz);

@@ -24,7 +24,7 @@ struct damper {
     size_t rows;                   /* number of contacts and of normal directions behind them */
     const struct contact *contact; /* [rows] */
     size_t dimension;              /* of a state */
-    size_t output, record;         /* numbers in the record: of an output, all */
+    size_t output, record;         /* numbers of an output in a record; numbers of a record */
     int in_plane;                  /* 1: contacts slide in a plane */
     int marched;                   /* 1: motions are found by marching only, since such contacts have a normal direction */
     struct linear open, stuck;     /* without friction, and with all contacts stuck */

@@ -34,6 +34,9 @@ struct scale {
 struct scale scale_of(const struct linear *l, double omega);
 #define NOTHING 1e-13
 
+/* A frequency below this part of the last one of omega is rounding of 0: no stiffness holds such a mode. */
+#define LOOSE 1e-6
+
 double dot(const double *a, const double *b, size_t n);
 
 /* |a - b| by the larger of both; 0 between zeros. */

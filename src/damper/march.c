@@ -16,7 +16,9 @@ void dgelss_(const int *rows, const int *cols, const int *count, double *a, cons
 /* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
 enum { BLOCK = 16, KEEP = 8, BLOCKS = 60, QUIET = 5 };
 static const double TOLERANCE = 1e-6;
-static const double DRIFT = 0.01; /* of a mode that no stiffness holds: friction alone stops it, in many more periods */
+/* Largest drift of a steady motion in a period, of its energy norm: only friction stops modes that no stiffness holds, after many
+ * periods. */
+static const double DRIFT = 0.01;
 static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
 static const double COULOMB_STEPS = 1000;                /* a period in steps of 1 */
 
@@ -121,12 +123,13 @@ static double distance(const struct damper *d, const double *a, const double *b)
     return sqrt(sum);
 }
 
-/* The largest change between two states of a mode that no stiffness holds, beside velocities: the energy norm does not see it. */
+/* Returns the largest difference of states a and b in modes that no stiffness holds, times r->omega, as a velocity: these
+ * displacements are not in distance(). */
 static double drift(const struct run *r, const double *a, const double *b)
 {
     const double *omega = r->d->open.omega;
     double most = 0.0;
-    for (size_t k = 0; k < r->d->modes && omega[k] <= 1e-6 * omega[r->d->modes - 1]; k++) {
+    for (size_t k = 0; k < r->d->modes && omega[k] <= LOOSE * omega[r->d->modes - 1]; k++) {
         most = fmax(most, r->omega * fabs(a[k] - b[k]));
     }
     return most;

@@ -128,11 +128,10 @@ struct sparse read_matrix(const char *path, const struct rows *rows)
     die_at_if(&t, !calculix && all.count < announced, "the file ends after %zu entries of %zu", all.count, announced);
     /* CalculiX's format has no count of entries: a file that is cut off lacks entries on the diagonal */
     const char *missing = calculix ? memchr(diagonal, 0, rows->count) : NULL;
-    if (missing) {
-        die("%s: row %zu of %zu has no entry on the diagonal: is the file cut off, or does it belong to other degrees of "
-            "freedom than those in %s?",
-            path, (size_t)(missing - diagonal) + 1, rows->count, rows->path);
-    }
+    die_if(missing,
+           "%s: row %zu of %zu has no entry on the diagonal: is the file cut off, or does it belong to other degrees of freedom "
+           "than those in %s?",
+           path, (size_t)(missing - diagonal) + 1, rows->count, rows->path);
     const struct sparse matrix = make_matrix(path, &all, rows->count, symmetric);
     free(diagonal);
     free(all.entry);

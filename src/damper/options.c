@@ -436,9 +436,7 @@ static void check_options(const struct options *o)
         }
     }
     die_if(missing[0], "what is missing:%s; see --help", missing);
-    if (!measured_place(o)) {
-        die("%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
-    }
+    die_if(!measured_place(o), "%s: --output is missing, the place where amplitudes are measured", o->loads.load[0].at.origin);
     die_if(o->amplitudes.points && !o->backbone, "option --amplitudes: --backbone is missing, the mode that has them");
     check_study(o);
     die_if(o->damping_matrix && o->damping.count, "option --damping-matrix %s: either a matrix or damping ratios, not both",

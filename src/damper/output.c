@@ -11,12 +11,9 @@
 
 const char *program = "example";
 
-void die_if(int wrong, const char *format, ...)
+void die(const char *format, ...)
 {
     va_list args;
-    if (!wrong) {
-        return;
-    }
     fflush(stdout);
     fprintf(stderr, "%s: ", program);
     va_start(args, format);
@@ -28,9 +25,7 @@ void die_if(int wrong, const char *format, ...)
 
 void need(int status, const char *detail)
 {
-    if (status) { /* the text is found for an error only: loops of measurements call this */
-        die("%s%s%s", tribo_strerror(status), detail && *detail ? ": " : "", detail ? detail : "");
-    }
+    die_if(status, "%s%s%s", tribo_strerror(status), detail && *detail ? ": " : "", detail ? detail : "");
 }
 
 void *need_memory(size_t count, size_t size)
@@ -40,7 +35,7 @@ void *need_memory(size_t count, size_t size)
     return memory;
 }
 
-/* There is room for a power of two. */
+/* The room is the least power of two that holds count elements: it is full if count is 0 or a power of two. */
 void *need_room(void *array, size_t count, size_t size)
 {
     if (count & (count - 1)) {
@@ -78,8 +73,7 @@ void close_file(FILE *file, const char *name)
 {
     const int failed = ferror(file);
     errno = 0;
-    const int kept = fclose(file) == 0 && !failed;
-    die_if(!kept, "cannot write %s%s%s", name, errno ? ": " : "", errno ? strerror(errno) : "");
+    die_if(fclose(file) != 0 || failed, "cannot write %s%s%s", name, errno ? ": " : "", errno ? strerror(errno) : "");
 }
 
 void write_value(FILE *file, double value, const char *key, ...)

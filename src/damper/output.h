@@ -12,15 +12,16 @@
 #define PRINTF_LIKE(at)
 #endif
 
-/* Prints "program: ..." to stderr and exits with 1 if something is wrong; die does always. program is set by main. */
+/* Prints "program: ..." to stderr and exits with 1; main sets program. die_if(wrong, format, ...) does so if wrong is not 0, and
+ * evaluates format and the values behind it in this case only. */
 extern const char *program;
-void die_if(int wrong, const char *format, ...) PRINTF_LIKE(2);
-#define die(...) die_if(1, __VA_ARGS__)
+void die(const char *format, ...) PRINTF_LIKE(1);
+#define die_if(wrong, ...) ((wrong) ? die(__VA_ARGS__) : (void)0)
 
 /* Ends the program if a call of the library failed; detail is the message that belongs to it, or NULL. */
 void need(int status, const char *detail);
 
-/* malloc that ends the program instead of failing. */
+/* calloc that ends the program instead of failing. */
 void *need_memory(size_t count, size_t size);
 
 /* Room for one element of that size more than the count that an array holds, which has grown by such calls from NULL: the array,

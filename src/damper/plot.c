@@ -61,7 +61,8 @@ static void begin_picture(const struct tables *t, const char *what, const char *
     free(picture);
 }
 
-/* Columns `left` and left + 1 of NAME-what.csv over the first one, on scales of their own; axis [3]: what they show. */
+/* Columns `left` and left + 1 of NAME-what.csv over the first one, on scales of their own; axis [3]: titles of the axes;
+ * title [2]: titles of the columns. */
 static void plot_two(const struct tables *t, const char *what, const char *scale, int left, const char *const *axis,
                      const char *const *title)
 {
@@ -99,14 +100,12 @@ void plot_family(const struct tables *t, const double *limit, size_t count, doub
     begin_picture(t, "family", "frequency of the load", "amplitude where the load acts");
     fprintf(t->script, "set logscale y\nset key title '%s'\n", t->limit);
     fprintf(t->script, "plot %s using 1:2 with lines linecolor '#9a9a9a' dashtype (2, 3) title 'no friction', \\\n", linear);
+    const char *const stable = t->followed ? "(strcol(9) eq '0' ? NaN : $3)" : "3";
     for (size_t k = 0; k < count; k++) {
-        for (int unstable = 0; unstable <= t->followed; unstable++) {
+        const double part = count > 1 ? (double)k / (double)(count - 1) : 0.0;
+        for (int unstable = 0; unstable <= t->followed; unstable++) { /* stable parts, then dashed the unstable ones */
             fprintf(t->script, "     %s skip 1 every :::%zu::%zu using 2:%s with lines linecolor palette frac %.4g ", family, k,
-                    k,
-                    unstable      ? "(strcol(9) eq '1' ? NaN : $3)"
-                    : t->followed ? "(strcol(9) eq '0' ? NaN : $3)"
-                                  : "3",
-                    count > 1 ? (double)k / (double)(count - 1) : 0.0);
+                    k, unstable ? "(strcol(9) eq '1' ? NaN : $3)" : stable, part);
             fprintf(t->script, unstable ? "dashtype (6, 4), \\\n" : "title '%.3g', \\\n", limit[k]);
         }
     }

@@ -66,9 +66,8 @@ size_t find_degree(const struct structure *s, const struct place *p)
         if (s->dof[i].direction != p->direction || distance_to(&s->dof[i], p->at) > 1e-6 * size) {
             continue;
         }
-        const struct degree *one = &s->dof[i], *other = &s->dof[found < s->ndof ? found : i];
-        die_if(other != one, "%s: two rows are there, %zu (node %zu) and %zu (node %zu)", p->origin, other->row, other->node,
-               one->row, one->node);
+        die_if(found < s->ndof, "%s: two rows are there, %zu (node %zu) and %zu (node %zu)", p->origin, s->dof[found].row,
+               s->dof[found].node, s->dof[i].row, s->dof[i].node);
         found = i;
     }
     die_if(found == s->ndof, "%s: the node there cannot move along %c", p->origin, "xyz"[p->direction - 1]);

@@ -65,7 +65,7 @@ void run_study(struct study *s);
 struct curve *run_curves(const struct study *s, int over_limit, const double *fixed, size_t count);
 void free_curves(struct curve *c, size_t count);
 
-/* The first message of a motion of the curves [count] that was not found. */
+/* Of curves [count] without a motion that was found: the first message; "not looked for" if there is none. */
 const char *first_message(const struct curve *c, size_t count);
 
 /* The limit between low and high where the value is least, to that part of it, for a value that falls and then rises; *least is

@@ -10,10 +10,10 @@
 
 enum { COMPARED = 3 /* amplitudes, at most, that are found with twice the modes, too */ };
 
-/* The nonlinear mode of an amplitude. Its motion has amplitude, found and message only. */
+/* The nonlinear mode of an amplitude. */
 struct vibration {
-    struct motion motion;
-    double omega, zeta; /* a guess before it is found: of the mode before */
+    struct motion motion; /* amplitude, found and message only */
+    double omega, zeta;   /* frequency, rad/time, and damping ratio; before the search: of the amplitude before */
 };
 
 /* Finds every step-th one of v [amplitudes], each from the one before, the first from the linear modes, with the modes of d.
@@ -23,9 +23,9 @@ static void find_backbone(const struct damper *d, const struct options *o, size_
     struct worker w = create_worker(d, 0);
     double *y = need_memory(w.dimension, sizeof *y), omega = d->backbone, zeta = 0.0;
     set_point(&w, o->limits.from, d->lowest);
+    memcpy(w.c, d->open.measured, d->modes * sizeof *w.c);
     for (size_t k = step / 2; k < o->amplitudes.points && !interrupted(); k += step) {
         v[k] = (struct vibration){{.amplitude = limit_of(&o->amplitudes, k)}, omega, zeta};
-        memcpy(w.c, d->open.measured, d->modes * sizeof *w.c);
         set_outcome(&v[k].motion, tribo_driver_find_mode(w.drv, w.c, v[k].motion.amplitude, &v[k].omega, &v[k].zeta, y), &w);
         show_point();
         omega = v[k].omega;

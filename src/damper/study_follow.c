@@ -15,7 +15,7 @@ static const char *const kinds[] = {
     [TRIBO_POINT_FOLD] = "fold",   [TRIBO_POINT_FLIP] = "flip",   [TRIBO_POINT_TORUS] = "torus", [TRIBO_POINT_BRANCH] = "branch",
     [TRIBO_POINT_STICK] = "stick", [TRIBO_POINT_SLIDE] = "slide", [TRIBO_POINT_GRAZE] = "graze", [TRIBO_POINT_ORDER] = "order"};
 
-/* Data of see_point: the curve so far, and the frequency hz at which it begins, parameter 1. */
+/* Data of see_point: the curve so far, and hz, the frequency of its first point, where point->parameter is 1. */
 struct trail {
     struct curve *curve;
     struct worker *w;

@@ -80,7 +80,6 @@ static struct motion show_motion(struct study *s, struct curve *c, double limit,
 static void find_most_power(struct study *s, struct curve *c)
 {
     const struct sample *most = largest_of(c, POWER);
-    const size_t at = most ? (size_t)(most - c->sample) : c->count;
     if (!most) {
         printf("no motion was found at any of these %ss: %s\n", s->tables->limit, first_message(c, 1));
         return;
@@ -89,6 +88,7 @@ static void find_most_power(struct study *s, struct curve *c)
         printf("friction dissipates nothing at any of these limits: nothing slips, or the contacts are where nothing moves\n");
         return;
     }
+    const size_t at = (size_t)(most - c->sample);
     if (at == 0 || at + 1 == c->count) {
         printf("most power is dissipated at the end of the range, at %s %g: widen --limits to find the optimum\n",
                s->tables->limit, c->sample[at].motion.limit);

@@ -16,13 +16,10 @@ char *make_printable(char *text)
     return text;
 }
 
-void die_at_if(const struct text *t, int wrong, const char *format, ...)
+void die_at(const struct text *t, const char *format, ...)
 {
     char text[300];
     va_list args;
-    if (!wrong) {
-        return;
-    }
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);

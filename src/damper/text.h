@@ -64,8 +64,9 @@ char *rest_of(const struct text *t);
 /* For messages: characters that do not print become question marks. Returns text. */
 char *make_printable(char *text);
 
-/* Ends the program with "place: ..." or "path:line: ..." if something is wrong. */
-void die_at_if(const struct text *t, int wrong, const char *format, ...) PRINTF_LIKE(3);
+/* die and die_if with "place: ..." or "path:line: ...". */
+void die_at(const struct text *t, const char *format, ...) PRINTF_LIKE(2);
+#define die_at_if(t, wrong, ...) ((wrong) ? die_at(t, __VA_ARGS__) : (void)0)
 
 /* Reads a value into the object at to. */
 typedef void reader(struct text *value, void *to);
