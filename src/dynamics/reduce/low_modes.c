@@ -253,11 +253,14 @@ static void add_attachment(const tribo_model *m, const struct shifted *s, struct
     if (!(norm > OWN * whole)) {
         return;
     }
-    for (double omega2; (omega2 = square_frequency(m, x, norm)) < lesser(0.5 * s->shift, 0.25 * before); before = omega2) {
+    double omega2 = square_frequency(m, x, norm);
+    while (omega2 < lesser(0.5 * s->shift, 0.25 * before)) {
+        before = omega2;
         memset(x, 0, n * sizeof *x); /* mx = M x, by low_modes_separate */
         tribo_add(x, s->shift, mx, n);
         tribo_cholesky_solve(&s->factor, 1, x);
         norm = low_modes_separate(m, r->count, r->phi, x, mx);
+        omega2 = square_frequency(m, x, norm);
     }
     for (size_t k = 0; k < n; k++) {
         r->phi[r->count * n + k] = x[k] / norm;

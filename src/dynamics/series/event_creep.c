@@ -142,7 +142,7 @@ static double find_settled(const struct event *e)
         const struct planar_contact *p = &m->plane->contact[k];
         const struct line *l = &e->lines.line[k];
         double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0; /* u and its rate at the end of the last step */
-        for (size_t j = e->order + 1; tribo_slides_in_plane(m, p) && j-- > 0;) {
+        for (size_t j = tribo_slides_in_plane(m, p) ? e->order + 1 : 0; j-- > 0;) {
             dn = dn * e->length + un;
             dt = dt * e->length + ut;
             un = un * e->length + l->un[j];

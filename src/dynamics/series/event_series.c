@@ -126,7 +126,7 @@ int tribo_event_start(struct event *e, double t, const double *y)
     return status;
 }
 
-/* The k-th coefficient of the power that contact i dissipates: force times velocity, behind a spring that of the slider. */
+/* Coefficient k of the power that contact i dissipates: force times velocity, of a compliant contact that of its slider. */
 static double power_of(const struct event *e, size_t i, size_t k)
 {
     const signed char slip = e->events.stick_slip.state.slip[i];

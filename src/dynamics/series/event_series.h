@@ -23,16 +23,16 @@ struct line {
     double weight[2];  /* 1 with a spring */
     double n[2], t[2]; /* n: first direction of x */
     int asymptotic;    /* 1: series of perturbations do not converge */
-    double *un, *ut;   /* [order + 2] coefficients of u along n and t; arrays below as well */
+    double *un, *ut;   /* [order + 2], as the arrays below but square: coefficients of u along n and t */
     double *xn, *xt;   /* x = weight v */
     double *speed;     /* |x|; with a spring the speed of the slider */
     double *g;         /* limit over weight */
     double *square;    /* [2 order + 1] |x|^2/time^(2s); of a contact at rest half the larger limit times |force/limit|^2 */
 
     /* with a spring before the slider: pair_series.c */
-    size_t lag; /* 1: the limit begins at 0 */
-    int fades;  /* 1: the limit ends at 0, and is so small that u may stay */
-    double *a;  /* u' = a r, r the normal of u */
+    size_t follows; /* 1: the force follows v, from a limit that is 0 or small; 0 of rigid contacts */
+    int fades;      /* 1: the limit ends at 0, and is so small that u may stay */
+    double *a;      /* u' = a r, r the normal of u */
 };
 
 struct lines {
@@ -227,8 +227,8 @@ double tribo_planar_series_brake(const struct event *e, size_t k, double tau);
  * and x/|x|, and no speed grows so much that it is lost in rounding. */
 double tribo_planar_series_shorten(const struct event *e, double h);
 
-/* Terms x^(k) tau^k/k! of perturbations of the state; arrays are [...][columns], those with rows of the last orders, cyclically,
- * the others of one order k. Loads and bases do not depend on the state. */
+/* Terms x^(k) tau^k/k! of perturbations of the state. Arrays are [...][columns]; [rows] holds the last orders, order k in row
+ * k % rows; arrays without it hold one order. Loads and bases do not depend on the state. */
 struct perturbed {
     size_t columns;
     size_t rows; /* 1; more than order + 1 of the series where forces turn, or limits fall */
@@ -270,9 +270,9 @@ int tribo_pair_series_begin(struct event *e);
  * k-th coefficients v [ncontact] of velocities. */
 void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, double *slide);
 
-/* turn: sets g of order k of all pairs, and, of pairs with slip TRIBO_SLIP_PLANE, z of order k + 1, or k if lag = 1, from terms
- * of order k of q and v. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs with
- * slip TRIBO_SLIP_PLANE; for k = 0 and lag = 0 first z, from the part of these rows across u. */
+/* turn: sets g of order k of all pairs, and, of pairs with slip TRIBO_SLIP_PLANE, z of order k + 1, or k if follows = 1, from
+ * terms of order k of q and v. force: sets g of order k and the two rows of force [ncontact][columns], terms of order k, of pairs
+ * with slip TRIBO_SLIP_PLANE; for k = 0 and follows = 0 first z, from the part of these rows across u. */
 void tribo_pair_series_turn(const struct event *e, size_t k, const struct perturbed *p);
 void tribo_pair_series_force(const struct event *e, size_t k, const struct perturbed *p, double *force);
 

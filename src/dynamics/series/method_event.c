@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Method "event": Coulomb's law on any system, by Taylor series of the motion between events (event_series.h); velocities and
- * forces of contacts are polynomials too. The force of a sliding planar contact turns with its velocity (planar_series.h).
+ * forces of contacts are polynomials too. The force of a sliding planar contact turns with its velocity (planar_series.c).
  *
  * Why no event is missed: a step is at most (order + 1)/2 over the highest frequency of structure and loads; there the remainder
  * of the series is less than its last term, which is below the tolerance; and the search on the polynomials skips no zero
@@ -330,22 +330,21 @@ static int method_event_create(tribo_driver *drv)
     return tribo_events_create(&e->events, drv, &motion_in_series, e);
 }
 
-/* Returns TRIBO_ERR_UNSUPPORTED for limits that follow the motion beside limits that fall with the speed. */
+/* Refuses limits that follow the motion beside limits that fall with the speed. */
 static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
     const tribo_system *sys = e->sys;
     const size_t dropping = sys->normals.count ? tribo_system_first_dropping(sys, 1) : sys->ncontact;
+    int status = TRIBO_OK;
     *events = &e->events;
-    const int status =
-        dropping == sys->ncontact
-            ? method_event_prepare(e)
-            : tribo_error(
-                  sys->message, TRIBO_ERR_UNSUPPORTED,
-                  "contact %zu has a limit that falls with the speed, which method event does not know beside limits that "
-                  "follow normal loads, as of contact %zu: take central/fixed or moreau/fixed",
-                  dropping, sys->normals.follower[0].contact);
-    return tribo_driver_pass(drv, status);
+    if (dropping < sys->ncontact) {
+        status = tribo_error(sys->message, TRIBO_ERR_UNSUPPORTED,
+                             "contact %zu has a limit that falls with the speed, which method event does not know beside limits "
+                             "that follow normal loads, as of contact %zu: take central/fixed or moreau/fixed",
+                             dropping, sys->normals.follower[0].contact);
+    }
+    return tribo_driver_pass(drv, status ? status : method_event_prepare(e));
 }
 
 const struct method tribo_method_event = {"event",

@@ -2,14 +2,13 @@
 /* Taylor series of a contact in a plane with a spring of compliance c before its slider. While the slider moves along u, |u| = 1,
  * the force f is -L u, L its limit, and
  *     v + c f' = sigma u,   sigma > 0 the speed of the slider.
- * L and sigma are g and speed of struct line, v is xn and xt; u' = A across. The part of order k along t gives u of order k + 1,
- * that along n sigma of order k.
- * lag = 1, where L(0) = 0 (touch-down), or the time c L(0)/|v| in which f turns is so short that f follows v: n is along v, the
- * term c L(0) A is left out, and order k gives u of order k. Steps of lag = 0 would be as short as that time. */
+ * L, sigma and A are g, speed and a of struct line, v is xn and xt; u' = A r, r the normal of u. The part of order k along t
+ * gives u of order k + 1, that along n sigma of order k.
+ * follows = 1 where L(0) = 0 (touch-down), or where f turns in so short a time c L(0)/|v| that f follows v: n is along v, the
+ * term c L(0) A is left out, and order k gives u of order k. Steps of follows = 0 would be as short as that time. */
 #include "event_series.h"
 #include "common/real.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Time before lift-off, in units of 1 over the highest frequency, in which the force is too small for its direction to count:
@@ -34,8 +33,11 @@ int tribo_pair_series_begin(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const int status = tribo_lines_reserve(e, 0);
+    if (status) {
+        return status;
+    }
     double unit = 1.0; /* time in which a force turns, or its limit ends */
-    for (size_t i = 0, k = 0; !status && k < e->lines.count; i++) {
+    for (size_t i = 0, k = 0; k < e->lines.count; i++) {
         if (m->constant.pair[i] == 1) {
             const double speed = hypot(m->state.glide[i], m->state.glide[i + 1]) / tribo_spring_of(m, i);
             const int slides = m->state.slip[i] == TRIBO_SLIP_PLANE && !tribo_follows_velocity(m, i, m->state.glide + i);
@@ -47,13 +49,13 @@ int tribo_pair_series_begin(struct event *e)
         }
     }
     e->order = (size_t)lesser((double)e->order, greater(MOST_DIGITS / greater(-log10(unit), 1.0), LEAST_ORDER));
-    return status;
+    return TRIBO_OK;
 }
 
-/* Finds u of order k + 1, or k if lag = 1, and the speed of order k of pair l, compliance c, by the equation of order k; A. */
+/* Sets u of order k + 1 (follows = 1: k), A of one order less and speed of order k by the equation of order k; c: compliance. */
 static void expand(struct line *l, double c, size_t k)
 {
-    const size_t at = l->lag ? k : k + 1, from = l->lag;
+    const size_t at = l->follows ? k : k + 1, from = l->follows;
     const double times = c * (double)(k + 1);
     if (k == 0) {
         l->un[0] = 1.0;
@@ -64,7 +66,7 @@ static void expand(struct line *l, double c, size_t k)
         l->ut[at] = 0.0;
         const double turned = times * tribo_product_of(l->g, l->ut, k + 1, from, k + 2);
         const double rest = l->xt[k] - tribo_product_of(l->speed, l->ut, k, 0, k) - turned;
-        l->ut[at] = l->fades ? 0.0 : rest / (times * l->g[from] + (l->lag ? l->speed[0] : 0.0));
+        l->ut[at] = l->fades ? 0.0 : rest / (times * l->g[from] + (l->follows ? l->speed[0] : 0.0));
         l->a[at - 1] = 0.0;
         for (size_t j = 1; j <= at; j++) {
             l->a[at - 1] += (double)j * (l->un[at - j] * l->ut[j] - l->ut[at - j] * l->un[j]);
@@ -94,18 +96,19 @@ void tribo_pair_series_slide(const struct event *e, size_t k, const double *v, d
         }
         if (k == 0) {
             l->fades = l->g[0] * e->fastest < -FADES * m->state.limit_rate[l->at];
-            l->lag = !l->fades && tribo_follows_velocity(m, l->at, x);
-            const double *along = l->lag ? x : e->force + l->at, side = l->lag ? 1.0 : -1.0, size = hypot(along[0], along[1]);
+            l->follows = !l->fades && tribo_follows_velocity(m, l->at, x);
+            l->asymptotic = l->follows && !(l->g[1] > 0.0);
+            const double *along = l->follows ? x : e->force + l->at;
+            const double side = l->follows ? 1.0 : -1.0, size = hypot(along[0], along[1]);
             tribo_line_set_direction(l, side * along[0] / size, side * along[1] / size);
         }
         l->xn[k] = l->n[0] * x[0] + l->n[1] * x[1];
         l->xt[k] = l->n[0] * x[1] - l->n[1] * x[0];
         expand(l, tribo_spring_of(m, l->at), k);
-        if (l->lag && k > 0) { /* u_k is known by this order */
+        if (l->follows && k > 0) { /* u_k is known by this order */
             tribo_line_force(l, k, 0, k + 1, e->force + k * sys->ncontact + l->at);
-            l->asymptotic = !(l->g[1] > 0.0);
         }
-        tribo_line_force(l, k + 1, l->lag, k + 2, slide + l->at);
+        tribo_line_force(l, k + 1, l->follows, k + 2, slide + l->at);
         slide[l->at] *= (double)(k + 1);
         slide[l->at + 1] *= (double)(k + 1);
     }
@@ -161,15 +164,15 @@ double tribo_pair_series_shorten(const struct event *e, double h, double most)
         if (m->state.slip[l->at] != TRIBO_SLIP_PLANE || l->fades) {
             continue;
         }
-        while (l->lag && h > 0.0 && !(pair_lag(e, l, h) <= LAGS)) {
+        while (l->follows && h > 0.0 && !(pair_lag(e, l, h) <= LAGS)) {
             h *= 0.8;
         }
         if (!e->events.sharp) {
             continue;
         }
         const double slides = tribo_spring_of(m, l->at) * l->g[0];
-        h = l->speed[0] * h > FADING * slides && !l->lag ? FADING * slides / l->speed[0] : h;
-        size_t power = l->lag; /* with which the limit changes */
+        h = l->speed[0] * h > FADING * slides && !l->follows ? FADING * slides / l->speed[0] : h;
+        size_t power = l->follows; /* with which the limit changes */
         while (power < e->order && l->g[power] == 0.0) {
             power++;
         }
@@ -184,8 +187,8 @@ double tribo_pair_series_shorten(const struct event *e, double h, double most)
 
 /* ------------------------------------------------------------------------------------------------------- perturbations */
 
-/* With u turned by z, du = z across, and the limit L + dL,
- *     c L z' + c A dL = across'dv - v'u z,   df = -u dL - L across z. */
+/* With u turned by z, du = z r, and the limit L + dL,
+ *     c L z' + c A dL = r'dv - v'u z,   df = -u dL - L z r. */
 
 void tribo_pair_series_turn(const struct event *e, size_t k, const struct perturbed *p)
 {
@@ -197,22 +200,23 @@ void tribo_pair_series_turn(const struct event *e, size_t k, const struct pertur
         if (e->events.stick_slip.state.slip[l->at] != TRIBO_SLIP_PLANE) {
             continue;
         }
-        double *z = tribo_turn_of(e, p, p->z, l->lag ? k : k + 1, s), power = 1.0;
+        double *z = tribo_turn_of(e, p, p->z, l->follows ? k : k + 1, s), power = 1.0;
         memset(z, 0, columns * sizeof *z);
         for (size_t j = 0; !l->fades && j <= k && j <= e->order; j++, power *= p->tau) {
             for (size_t d = 0; d < 2; d++) {
                 const double *dv = p->v + (k - j) % p->rows * all + (l->at + d) * columns;
                 tribo_add(z, power * tribo_line_across(l, d, j), dv, columns);
             }
-            tribo_add(z, -power * c * (l->lag && j == e->order ? 0.0 : l->a[j]), tribo_turn_of(e, p, p->g, k - j, s), columns);
-            tribo_add(z, l->lag && j == 0 ? 0.0 : -power * (l->speed[j] + c * (double)(j + 1) * l->g[j + 1]),
+            tribo_add(z, -power * c * (l->follows && j == e->order ? 0.0 : l->a[j]), tribo_turn_of(e, p, p->g, k - j, s),
+                      columns);
+            tribo_add(z, l->follows && j == 0 ? 0.0 : -power * (l->speed[j] + c * (double)(j + 1) * l->g[j + 1]),
                       tribo_turn_of(e, p, p->z, k - j, s), columns);
-            if (j > l->lag) {
+            if (j > l->follows) {
                 const double *before = tribo_turn_of(e, p, p->z, k + 1 - j, s);
                 tribo_add(z, -power / p->tau * c * l->g[j] * (double)(k + 1 - j), before, columns);
             }
         }
-        const double times = c * (double)(k + 1), by = l->lag ? times * l->g[1] + l->speed[0] : times * l->g[0] / p->tau;
+        const double times = c * (double)(k + 1), by = l->follows ? times * l->g[1] + l->speed[0] : times * l->g[0] / p->tau;
         for (size_t i = 0; i < columns; i++) {
             z[i] /= by;
         }
@@ -229,7 +233,7 @@ void tribo_pair_series_force(const struct event *e, size_t k, const struct pertu
             continue;
         }
         tribo_event_perturb_limit(e, l->at, p->q, columns, tribo_turn_of(e, p, p->g, k, s));
-        for (size_t i = 0; k == 0 && !l->lag && i < columns; i++) { /* z by the part of the force across u */
+        for (size_t i = 0; k == 0 && !l->follows && i < columns; i++) { /* z by the part of the force across u */
             z[i] = -(tribo_line_across(l, 0, 0) * f[i] + tribo_line_across(l, 1, 0) * f[columns + i]) / l->g[0];
         }
         memset(f, 0, 2 * columns * sizeof *f);

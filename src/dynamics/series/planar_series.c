@@ -18,7 +18,6 @@
 #include "event_series.h"
 #include "common/layout.h"
 
-#include <float.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,15 +87,15 @@ void tribo_line_force(const struct line *l, size_t k, size_t from, size_t to, do
 void tribo_line_turn_force(const struct event *e, size_t c, size_t k, const struct perturbed *p, double *force)
 {
     const struct line *l = &e->lines.line[c];
-    const size_t follows = tribo_normals_follower(e->sys, l->at) ? p->columns : 0; /* else g is 0 */
+    const size_t grows = tribo_normals_follower(e->sys, l->at) ? p->columns : 0; /* columns of g, which else is 0 */
     double power = 1.0;
     for (size_t j = 0; j <= k && j <= e->order; j++, power *= p->tau) {
         const double *f = e->force + j * e->sys->ncontact + l->at, *g = tribo_turn_of(e, p, p->g, k - j, c);
         const double turned[2] = {-f[1] * l->weight[0] / l->weight[1], f[0] * l->weight[1] / l->weight[0]};
         for (size_t d = 0; d < 2; d++) {
             double *to = force + (l->at + d) * p->columns;
-            tribo_add(to, l->lag && j == 0 ? 0.0 : power * turned[d], tribo_turn_of(e, p, p->z, k - j, c), p->columns);
-            tribo_add(to, -power * l->weight[d] * tribo_line_along(l, d, j), g, follows);
+            tribo_add(to, l->follows && j == 0 ? 0.0 : power * turned[d], tribo_turn_of(e, p, p->z, k - j, c), p->columns);
+            tribo_add(to, -power * l->weight[d] * tribo_line_along(l, d, j), g, grows);
         }
     }
 }
@@ -188,7 +187,7 @@ int tribo_planar_series_begin(struct event *e)
         struct line *l = &s->line[k];
         const int implicit = is_implicit(m, &all[k]);
         l->at = all[k].at;
-        l->lag = 0;
+        l->follows = 0;
         l->weight[0] = all[k].weight[0];
         l->weight[1] = all[k].weight[1];
         l->asymptotic = implicit && all[k].begins == BY_FORCE;

@@ -198,16 +198,14 @@ static int replace_matrices(tribo_model *m, struct condensed *s)
 
 int tribo_model_condense(tribo_model *m, tribo_system **sys)
 {
-    struct condensed s = {0};
     const size_t given = m->ndof, c = m->ncontact, *mass = m->mass.first;
     size_t where = 0;
-    s.x =
-        (struct expansion){.dofs = given, .place = malloc((given + c) * sizeof(size_t)), .terms = malloc(given * sizeof(double))};
-    int status =
-        ALLOCATE(ARRAY(s.row, given), ARRAY(s.sum, given), ARRAY(s.size, given), ARRAY(s.own, c), ARRAY(s.column, given)) &&
-                s.x.place && s.x.terms
-            ? TRIBO_OK
-            : TRIBO_ERR_MEMORY;
+    struct condensed s = {.x = {.dofs = given}};
+    s.x.place = malloc((given + c) * sizeof *s.x.place);
+    s.x.terms = malloc(given * sizeof *s.x.terms);
+    int done = s.x.place && s.x.terms &&
+               ALLOCATE(ARRAY(s.row, given), ARRAY(s.sum, given), ARRAY(s.size, given), ARRAY(s.own, c), ARRAY(s.column, given));
+    int status = done ? TRIBO_OK : TRIBO_ERR_MEMORY;
     for (size_t d = 0; d < given; d++) {
         s.with += mass[d] < mass[d + 1];
     }
@@ -225,9 +223,9 @@ int tribo_model_condense(tribo_model *m, tribo_system **sys)
         status = tribo_model_check_symmetric(m, "stiffness", &m->stiffness,
                                              ": beside degrees of freedom without mass it must be symmetric");
     }
-    int done = take_without(&s, &m->stiffness, s.x.place, s.with, s.without, &s.kww) &&
-               take_without(&s, &m->stiffness, s.x.place, 0, s.with, &s.kqw) &&
-               take_without(&s, &m->direction, NULL, 0, m->ncontact, &s.x.touch);
+    done = take_without(&s, &m->stiffness, s.x.place, s.with, s.without, &s.kww) &&
+           take_without(&s, &m->stiffness, s.x.place, 0, s.with, &s.kqw) &&
+           take_without(&s, &m->direction, NULL, 0, m->ncontact, &s.x.touch);
     status = status ? status : done ? check_damping(m, &s) : TRIBO_ERR_MEMORY;
     status = status ? status : factorize_without(m, &s);
     if (!status) {

@@ -161,29 +161,27 @@ static int set_csr(tribo_model *model, enum which which, const size_t *rowptr, c
     }
     const struct matrix rows = {
         .rows = in.rows, .cols = model->ndof, .first = (size_t *)rowptr, .col = (size_t *)col, .val = (double *)val};
-    struct matrix turned = {0}, sorted = {0}; /* a transposed matrix has ascending columns */
-    struct triplets t = {0};                  /* without entries that are 0, which would pass for bodies that a contact moves */
-    int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&sorted, &turned), zeros = 0;
+    struct matrix turned = {0}; /* a transposed matrix has ascending columns */
+    struct triplets t = {0};    /* without entries that are 0, which would pass for bodies that a contact moves */
+    int done = tribo_matrix_transpose(&turned, &rows) && tribo_matrix_transpose(&a, &turned), zeros = 0;
     tribo_matrix_free(&turned);
     for (size_t i = 0; done && i < in.rows; i++) {
-        for (size_t k = sorted.first[i]; k < sorted.first[i + 1]; k++) {
-            zeros |= sorted.val[k] == 0.0;
-            if (k > sorted.first[i] && sorted.col[k] == sorted.col[k - 1]) {
-                status =
-                    tribo_error(model->message, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, sorted.col[k]);
+        for (size_t k = a.first[i]; k < a.first[i + 1]; k++) {
+            zeros |= a.val[k] == 0.0;
+            if (k > a.first[i] && a.col[k] == a.col[k - 1]) {
+                status = tribo_error(model->message, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
             }
         }
     }
-    for (size_t i = 0; done && !status && zeros && i < in.rows; i++) {
-        tribo_triplets_put_row(&t, i, &sorted, i);
+    for (size_t i = 0; !status && zeros && i < in.rows; i++) {
+        tribo_triplets_put_row(&t, i, &a, i);
     }
-    if (done && !status && zeros) {
+    if (status || zeros) {
+        tribo_matrix_free(&a);
+    }
+    if (!status && zeros) {
         done = tribo_triplets_finish(&t, in.rows, model->ndof, &a);
-    } else if (done && !status) {
-        a = sorted;
-        sorted = (struct matrix){0};
     }
-    tribo_matrix_free(&sorted);
     return status ? status : model_take(&in, &a, done);
 }
 

@@ -88,17 +88,17 @@ static int set_dense_operator(const tribo_model *m, tribo_system *sys, const str
                             : status;
 }
 
-/* Returns 1/M_dd [ndof], in memory of the caller's, or NULL if out of memory. */
+/* Returns 1/M_dd [ndof] of a diagonal M, in memory of the caller's; NULL if M has a factor, or out of memory. */
 static double *invert_masses(const tribo_system *sys)
 {
-    double *inverse = malloc(sys->ndof * sizeof *inverse);
+    double *inverse = sys->factor.factor || sys->factor.sparse ? NULL : malloc(sys->ndof * sizeof *inverse);
     for (size_t d = 0; inverse && d < sys->ndof; d++) {
         inverse[d] = 1.0 / tribo_matrix_get(&sys->mass, d, d);
     }
     return inverse;
 }
 
-/* solved = M^-1 a; inverse [ndof]: 1/M_dd, NULL: by the factor of M. Returns 0 if out of memory. */
+/* solved = M^-1 a; inverse: as invert_masses returns. Returns 0 if out of memory. */
 static int solve_matrix(const tribo_system *sys, const double *inverse, const struct matrix *a, struct matrix *solved)
 {
     if (inverse) {
@@ -106,7 +106,7 @@ static int solve_matrix(const tribo_system *sys, const double *inverse, const st
         tribo_matrix_scale_rows(solved, inverse);
         return done;
     }
-    double *x = tribo_matrix_to_dense(a);
+    double *x = sys->factor.factor || sys->factor.sparse ? tribo_matrix_to_dense(a) : NULL;
     if (x) {
         tribo_half_solve(&sys->factor, 0, x, a->cols);
         tribo_half_solve(&sys->factor, 1, x, a->cols);
@@ -119,15 +119,14 @@ static int solve_matrix(const tribo_system *sys, const double *inverse, const st
 /* Sets M^-1 K, M^-1 C and, in the place of J', M^-1 J' of sys; sets R. Returns a status. */
 static int solve_by_masses(const tribo_model *m, tribo_system *sys, const struct matrix *j)
 {
-    const int diagonal = !sys->factor.factor && !sys->factor.sparse;
     struct matrix turned = sys->response;
     sys->response = (struct matrix){0};
-    double *inverse = diagonal ? invert_masses(sys) : NULL, *z = NULL;
-    const int done = (inverse || !diagonal) && solve_matrix(sys, inverse, &turned, &sys->response) &&
+    double *inverse = invert_masses(sys), *z = NULL;
+    const int done = solve_matrix(sys, inverse, &turned, &sys->response) &&
                      solve_matrix(sys, inverse, &sys->k, &sys->stiffness) &&
                      (!sys->c.rows || solve_matrix(sys, inverse, &sys->c, &sys->damping));
     int status = TRIBO_ERR_MEMORY;
-    if (done && diagonal && !m->nmode) {
+    if (done && inverse && !m->nmode) {
         status = tribo_set_operator_mass(sys->contacts, m->ndof, inverse, j->first, j->col, j->val);
         status = status ? tribo_error(m->message, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
     } else if (done && (z = tribo_matrix_to_dense(&turned)) != NULL) {
@@ -201,7 +200,7 @@ int tribo_model_build(tribo_model *m, tribo_system **sys)
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_condense(m, &s);
         if (!status && circulates) { /* the row sum bounds the norm of M^-1 (K - K')/2, antisymmetric in the metric of M */
-            double *inverse = s->factor.factor || s->factor.sparse ? NULL : invert_masses(s);
+            double *inverse = invert_masses(s);
             const int done = tribo_matrix_transpose(&mirror, &s->k) && tribo_matrix_sum(&odd, 0.5, &s->k, -0.5, &mirror) &&
                              solve_matrix(s, inverse, &odd, &rates);
             free(inverse);

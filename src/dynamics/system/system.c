@@ -152,12 +152,12 @@ int tribo_system_find_pairs(const tribo_system *sys, unsigned char *pair)
         return TRIBO_OK;
     }
     tribo_context *probe = NULL;
-    double *one = malloc(2 * c * sizeof *one);
-    signed char *slip = (signed char *)(one + c);
-    for (size_t i = 0; one && i < c; i++) {
+    double *one;
+    signed char *slip;
+    int status = ALLOCATE(ARRAY(one, c), ARRAY(slip, c)) ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
+    for (size_t i = 0; !status && i < c; i++) {
         one[i] = 1.0;
     }
-    int status = one ? tribo_clone(sys->contacts, &probe) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_set_law(probe, TRIBO_COULOMB);
     status = status ? status : tribo_set_limit(probe, one);
     status = status ? status : tribo_balance(probe, one, one, NULL, one);
