@@ -265,8 +265,7 @@ static int restore(struct track *c, const struct knot *k)
     return status || c->ask->motion == TRIBO_MOTION_CYCLE ? status : tribo_shooting_find_flow(c->s);
 }
 
-/* Shows the motion k, c->s->here, to the observer. Stability is not known where the force of an elastic contact only touches its
- * limit, unless motions are unique. Returns a status. */
+/* Shows the motion k, c->s->here, to the observer. Returns a status. */
 static int show(struct track *c, const struct knot *k, int kind, size_t contact)
 {
     struct shooting *s = c->s;
@@ -276,9 +275,13 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
     c->owner->found = 1;
     c->owner->told = s;
     c->owner->revision = tribo_system_revision(drv->sys);
-    const int asks = k->outside >= 0 && !c->unique, touched = asks ? tribo_shooting_check_touches(s, "stability") : TRIBO_OK;
-    if (touched && touched != TRIBO_ERR_UNSUPPORTED) {
-        return touched;
+    int stable = k->outside < 0 ? -1 : k->outside == 0;
+    if (stable >= 0 && !c->unique) { /* multipliers show no stability if the force of an elastic contact only touches its limit */
+        const int status = tribo_shooting_check_touches(s, "stability");
+        if (status && status != TRIBO_ERR_UNSUPPORTED) {
+            return status;
+        }
+        stable = status == TRIBO_ERR_UNSUPPORTED ? -1 : stable;
     }
     if (drv->motion) {
         tribo_system_write_state(s->map.sys, s->map.t, c->w->y, c->shown);
@@ -294,7 +297,7 @@ static int show(struct track *c, const struct knot *k, int kind, size_t contact)
                                      .y = c->shown,
                                      .kind = kind,
                                      .contact = normal ? drv->sys->normals.normal[contact - drv->sys->ncontact].row : contact,
-                                     .stable = k->outside < 0 || touched ? -1 : k->outside == 0};
+                                     .stable = stable};
     c->points++;
     s->extra.count = c->base.count;
     const int answer = c->seen ? c->seen(&point, c->data) : 0;
@@ -330,8 +333,7 @@ static double test_of(const struct track *c, const struct bracket *b, const stru
 /* to = from. Returns a status. */
 static int copy_knot(const struct track *c, struct knot *to, const struct knot *from)
 {
-    const size_t each = (size_t)(c->knot[1].z - c->knot[0].z); /* values of a knot: its arrays, from z on */
-    memcpy(to->z, from->z, each * sizeof *to->z);
+    memcpy(to->z, from->z, c->values * sizeof *to->z);
     to->trivial = from->trivial;
     to->outside = from->outside;
     int done = 1;
@@ -722,24 +724,20 @@ static int follow(struct track *c)
 static int allocate(struct track *c)
 {
     const tribo_system *sys = c->owner->map.sys;
-    const size_t n = c->n, all = n + TRIBO_UNKNOWNS, values = tribo_system_dimension(sys) + n;
+    const size_t n = c->n, all = n + TRIBO_UNKNOWNS, dimension = tribo_system_dimension(sys), multipliers = dimension + n;
     struct knot *const k = c->knot;
-    const size_t each = 3 * all + 2 * values;
-    double *memory;
-    if (!ALLOCATE(ARRAY(memory, (TRIBO_KNOTS + 1) * each), ARRAY(c->limit, sys->ncontact), ARRAY(c->put, sys->ncontact))) {
+    c->values = 3 * all + 2 * multipliers;
+    if (!ALLOCATE(ARRAY(k->z, TRIBO_KNOTS * c->values), ARRAY(c->guess, all), ARRAY(c->beyond, all), ARRAY(c->shown, dimension),
+                  ARRAY(c->limit, sys->ncontact), ARRAY(c->put, sys->ncontact))) {
         return tribo_error(c->owner->map.drv->message, TRIBO_ERR_MEMORY, "out of memory for a curve");
     }
     for (size_t i = 0; i < TRIBO_KNOTS; i++) {
-        k[i].z = memory + i * each;
+        k[i].z = k->z + i * c->values;
         k[i].rate = k[i].z + all;
         k[i].tangent = k[i].rate + all;
         k[i].re = k[i].tangent + all;
-        k[i].im = k[i].re + values;
+        k[i].im = k[i].re + multipliers;
     }
-    c->memory = memory;
-    c->guess = memory + TRIBO_KNOTS * each;
-    c->beyond = c->guess + all;
-    c->shown = c->beyond + all;
     return TRIBO_OK;
 }
 

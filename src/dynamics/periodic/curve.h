@@ -27,7 +27,7 @@ int tribo_word_same(const struct derivative *a, const struct derivative *b, size
  * TRIBO_POINT_ORDER: the sequences of all contacts and normals alone are equal. */
 int tribo_word_change(const struct word *from, const struct word *to, size_t contacts, size_t *contact);
 
-/* A motion of the curve. */
+/* A motion of the curve; its arrays follow each other, from z on. */
 struct knot {
     double *z;       /* [n + count] x, unknowns and p in their own units */
     double *tangent; /* [n + count] along the curve, of length 1 with unknowns over units of the curve */
@@ -55,10 +55,11 @@ struct track {
     double ahead;
     int unique; /* 1: one motion for each p: sections of constant p */
     /* 0, 1: ends of a step; 2 to 8: to locate points; 9, 10: ends of a piece; 11, 12: the last ones */
-    struct knot knot[TRIBO_KNOTS];
-    size_t known;           /* number of last motions for a polynomial: the end of the step, and those of knot[11], [12] */
-    double *guess, *beyond; /* [n + count] a guess; a tangent */
-    double *memory, *shown; /* memory of all arrays; [dimension] state of the last point, as the caller has it */
+    struct knot knot[TRIBO_KNOTS]; /* knot[0].z owns the memory of all arrays */
+    size_t values;                 /* numbers in the arrays of a knot */
+    size_t known;                  /* number of last motions for a polynomial: the end of the step, and those of knot[11], [12] */
+    double *guess, *beyond;        /* [n + count] a guess; a tangent */
+    double *shown;                 /* [dimension] state of the last point, as the caller has it */
     int (*seen)(const tribo_curve_point *point, void *data);
     void *data;
     size_t points;          /* seen so far */

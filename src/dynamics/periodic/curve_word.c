@@ -101,16 +101,14 @@ int tribo_word_change(const struct word *from, const struct word *to, size_t con
 int tribo_word_same(const struct derivative *a, const struct derivative *b, size_t width)
 {
     int same = 1;
-    for (size_t k = 0, l = 0; same && k <= a->steps; k++) {
+    for (size_t k = 0, l = 0; same && (k < a->steps || l < b->steps);) {
         if (k < a->steps && !a->step[k].slip) {
-            continue; /* a jump */
-        }
-        while (l < b->steps && !b->step[l].slip) {
+            k++; /* a jump */
+        } else if (l < b->steps && !b->step[l].slip) {
             l++;
+        } else {
+            same = k < a->steps && l < b->steps && memcmp(a->step[k++].slip, b->step[l++].slip, width) == 0;
         }
-        same =
-            k < a->steps && l < b->steps ? memcmp(a->step[k].slip, b->step[l].slip, width) == 0 : k == a->steps && l == b->steps;
-        l++;
     }
     return same;
 }

@@ -219,7 +219,7 @@ static int find_shift(struct second *x)
     const struct events *e = d->map->events;
     const signed char *now = e->stick_slip.state.slip;
     const size_t n = d->map->sys->ndof, at = v->count ? v->contact[0] : e->met ? e->met->contact : 0;
-    size_t changes = 0, own = 0; /* number of contacts beside `at` that change; 1: contact `at`, which ended the phase, does */
+    size_t changes = 0, own = 0; /* changes: number of contacts but `at` of which slip changes; own = 1: that of `at` does */
     for (size_t i = 0; i < d->contacts; i++) {
         const size_t change = v->before[i] != now[i] && !(v->count == 1 && v->group[i] == 1);
         own += i == at ? change : 0;

@@ -155,8 +155,8 @@ static void lower_springs(struct period_map *m)
     }
 }
 
-/* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration
- * (in a ring turned back as the state after a span), and for spring forces above limits. Returns a status. */
+/* Sets m->y = the state of coordinates x, corrected for rounding of velocities at contacts that rest since the last integration,
+ * and for spring forces above limits. Returns a status. */
 static int enter(struct period_map *m, const double *x)
 {
     memcpy(m->x, x, m->n * sizeof *x);
@@ -167,7 +167,7 @@ static int enter(struct period_map *m, const double *x)
         const size_t count = m->sys->ncontact, by = m->ring.sectors ? m->ring.step * (count / m->ring.sectors) : 0;
         signed char *before = (signed char *)m->limit;
         memcpy(before, contacts->state.slip, count);
-        for (size_t i = 0; by && i < count; i++) {
+        for (size_t i = 0; by && i < count; i++) { /* a ring turns x back: contact i has the slip of contact i + by */
             tribo_stick_slip_set(contacts, i, before[(i + by) % count]);
         }
         status = by ? tribo_stick_slip_find_holds(contacts, m->sys) : TRIBO_OK;

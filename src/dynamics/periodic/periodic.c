@@ -314,7 +314,7 @@ int tribo_driver_follow_curve(tribo_driver *drv, const tribo_curve *curve, doubl
         memcpy(y, c.shown, tribo_system_dimension(drv->sys) * sizeof *y);
         *period = w.period;
     }
-    free(c.memory);
+    free(c.knot->z);
     free(own);
     free(from);
     return status;

@@ -167,7 +167,7 @@ static int fold_system(tribo_driver *drv, const struct ring *r, tribo_system **s
     const tribo_system *from = drv->sys;
     const size_t n = from->ndof / drv->shooting->asked.sectors * r->sectors,
                  contacts = from->ncontact / drv->shooting->asked.sectors * r->sectors;
-    double *a = malloc((n * (n + contacts) + 1) * sizeof *a), *limit = from->work.put_limit;
+    double *a = malloc((n * (n + contacts) + 1) * sizeof *a);
     tribo_model *m = NULL;
     int status = a ? tribo_model_create(&m, n, contacts) : TRIBO_ERR_MEMORY;
     if (!status) {
@@ -193,7 +193,7 @@ static int fold_system(tribo_driver *drv, const struct ring *r, tribo_system **s
         status = status ? status : tribo_system_take_settings(*sys);
     }
     if (!status) {
-        memcpy((*sys)->tally, from->tally, contacts * sizeof *limit);
+        memcpy((*sys)->tally, from->tally, contacts * sizeof *from->tally);
         status = tribo_loads_copy_first(*sys, from) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     }
     status = status ? tribo_error(drv->message, status, "sectors of a ring: %s", tribo_strerror(status)) : status;

@@ -35,7 +35,7 @@
 /* A step is successful if the residual falls to this part. */
 #define PAYS 0.9
 
-/* LEFT: |ratio| below which a shorter step is good. Number of halvings of a step, at most; where distances may increase. */
+/* LEFT: |ratio| below which a shorter step is good. HALVED: most halvings of a step; MOST_HALVED: likewise, if may_diverge. */
 #define LEFT 0.5
 enum { HALVED = 3, MOST_HALVED = 6 };
 

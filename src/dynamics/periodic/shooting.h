@@ -47,7 +47,7 @@ struct shooting {
     struct border extra;
     struct point point[2];
     struct point *here, *there; /* current point; end of the step */
-    struct point beside;        /* of another value of a curve's parameter */
+    struct point beside;        /* of curve_border: at another value of the parameter; border is not set */
     struct point *flow;         /* here, or there at another time of the motion found: has its multipliers */
     double *a, *b;              /* [n + TRIBO_UNKNOWNS][n + TRIBO_UNKNOWNS], [n][n] workspace; a owns the memory of all arrays */
     double *space;              /* workspace of tribo_gmres */

@@ -53,8 +53,9 @@ struct derivative {
 /* Removes all steps and the matrix; free: takes a zeroed d. */
 void tribo_derivative_free(struct derivative *d);
 
-/* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives: with
- * p->moves, the phase must be that which ends. Returns a status, its message on the system's context. */
+/* Moves perturbations v [n][columns] by the steps from `first` on. p: NULL, or parameters by which v are derivatives; unless
+ * p->moves = NULL these steps have no phase but that which ends, the motion of which is the source. Returns a status, its message
+ * on the system's context. */
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v, const struct parameters *p);
 
 /* Returns 1 if a contact is at rest in all phases. */

@@ -60,11 +60,11 @@ static int steady_read_drives(struct equilibrium *e)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, e->residual);
     tribo_matrix_multiply(&sys->mass, e->residual, e->load);
     tribo_system_limits(sys, e->limit, e->way);
-    const int unknown = tribo_system_find_pairs(sys, e->pair);
-    if (unknown) {
-        return unknown;
+    int status = tribo_system_find_pairs(sys, e->pair);
+    if (status) {
+        return status;
     }
-    int status = tribo_set_law(e->probe, TRIBO_COULOMB);
+    status = tribo_set_law(e->probe, TRIBO_COULOMB);
     status = status ? status : tribo_set_coupling(e->probe, TRIBO_CONSISTENT);
     for (size_t i = 0; i < c; i++) {
         const signed char slip = e->given ? e->given[i] : 0, moves = (signed char)(e->base[i] > 0.0 ? -1 : e->base[i] < 0.0);

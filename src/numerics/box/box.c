@@ -59,8 +59,8 @@ static int box_pulls(const struct box_qp *p, size_t i, double pull)
     return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
 }
 
-/* Returns 1 if the gradients of the independent x are at most noises times their rounding. error [size]: that of x, which then
- * counts as rounding of the gradients; NULL: not. */
+/* Returns 1 if the gradients of the independent x are at most noises times their rounding: noise_i, and sum_j |R_ij error_j| by
+ * the rounding error [size] of x; error = NULL: noise_i only. */
 static int box_settled(const struct box_qp *p, double noises, const double *error)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {

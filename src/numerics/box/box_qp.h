@@ -3,8 +3,7 @@
  * by place in the group. Nothing here allocates, unless it says so.
  *
  *   factor.c          rows of R, its null space, and its factor over the free contacts: a square block, kept from call to call
- *   and
- *                     changed row by row, or with twice as many digits, for light bodies between heavy ones
+ *                     and changed row by row, or with twice as many digits, for light bodies between heavy ones
  *   factor_sparse.c   the same for large groups with few entries
  *   small.h           solves the problem of up to 4 contacts
  *   box.c             the sets of free contacts and of contacts at a bound, Newton's method, the solution of the problem, its

@@ -98,8 +98,11 @@ static inline void exchange_contacts(const struct box_qp *p, int graded, size_t 
         double *const l = array[a];
         tribo_exchange(l + k * size, l + best * size, k, 1);
         tribo_exchange(l + k * (size + 1), l + best * (size + 1), 1, 1);
-        for (size_t i = k + 1; i < all; i++) {
-            tribo_exchange(l + i * size + k, i < best ? l + best * size + i : l + i * size + best, i != best, 1);
+        for (size_t i = k + 1; i < best; i++) {
+            tribo_exchange(l + i * size + k, l + best * size + i, 1, 1);
+        }
+        for (size_t i = best + 1; i < all; i++) {
+            tribo_exchange(l + i * size + k, l + i * size + best, 1, 1);
         }
     }
     p->order[k] = p->order[best];

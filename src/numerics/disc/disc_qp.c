@@ -197,7 +197,7 @@ static void disc_approach(struct disc_qp *p)
     }
 }
 
-/* Ends of the interior-point method: LITTLE shows the places unless S is nearly singular. */
+/* `least` of tribo_disc_interior: the places are those of the solution, with LITTLE unless S is nearly singular. */
 #define LITTLE 1e-13
 #define NOTHING 1e-20
 

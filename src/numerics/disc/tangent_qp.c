@@ -30,8 +30,8 @@
 /* A distance longer than any within a set, in parts of limits. */
 #define BEYOND_ALL 4.0
 
-/* sum [2] = S x in the rows of the contact at i, which have the same columns, size [2] = sum_k |s_ik x_k|; with one direction both
- * entries are alike. */
+/* sum [2] = S x in the rows of the contact at i, which have the same columns, size [2] = sum_k |s_ik x_k| there; sum[1] = sum[0]
+ * and size[1] = size[0] for a contact of one direction. */
 static inline void contact_rows(const struct disc_qp *p, size_t i, const double *x, double *sum, double *size)
 {
     const size_t begin = tribo_disc_row(p, i), terms = tribo_disc_terms(p, i);
