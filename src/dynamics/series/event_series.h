@@ -263,7 +263,7 @@ int tribo_planar_series_turn_finish(struct event *e, size_t k, const struct pert
 
 /* -------------------------------------------------------------------------------------------------------- pair_series.c */
 
-/* Makes room. Returns a status, its message on the system's context. */
+/* Sets the order for a phase; makes room. Returns a status, its message on the system's context. */
 int tribo_pair_series_begin(struct event *e);
 
 /* Sets entries of slide [ncontact], the k-th coefficients of the rates of forces, of pairs with slip TRIBO_SLIP_PLANE, from the

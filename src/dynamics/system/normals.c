@@ -92,7 +92,7 @@ int tribo_normals_copy(tribo_system *to, const tribo_system *from)
     *s = *f;
     const int done = !f->count || normals_reserve(s, f->followers, from->ncontact);
     if (done && f->count) {
-        memcpy(s->normal, f->normal, (size_t)((char *)f->force - (char *)f->normal));
+        memcpy(s->normal, f->normal, (size_t)((char *)f->force - (char *)f->normal)); /* all arrays but force */
     }
     return done;
 }
