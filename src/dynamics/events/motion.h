@@ -11,8 +11,7 @@ struct signal;
 
 /* What moves perturbations [columns] of a phase besides their initial values: column j has q'' += B force + inertia_j q'' +
  * damping_j AC q', q' and q'' of the motion in the phase that ends. force [ncontact][columns]: of rigid contacts, constant.
- * inertia, damping
- * [columns]; or both NULL: 0. */
+ * inertia, damping [columns], or both NULL: 0. */
 struct source {
     const double *force, *inertia, *damping;
 };
